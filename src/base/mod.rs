@@ -1,0 +1,9 @@
+//! What everything else stands on: random streams, discrete distributions, triangles, statistics, colour, errors.
+
+pub mod colour;
+pub mod discrete;
+pub mod error;
+pub mod names;
+pub mod random;
+pub mod statistics;
+pub mod triangle;

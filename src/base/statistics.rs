@@ -1,0 +1,104 @@
+//! Means, intervals and the tests that the checks rest on.
+
+/// Sample size, mean and variance of a list of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    /// How many numbers.
+    pub n: usize,
+    /// Their mean; 0 of none.
+    pub mean: f64,
+    /// Their unbiased variance; 0 of fewer than two.
+    pub variance: f64,
+}
+
+impl Moments {
+    /// The moments of `values`, in two passes.
+    pub fn of(values: impl IntoIterator<Item = f64> + Clone) -> Self {
+        let (mut n, mut sum) = (0usize, 0.0);
+        for v in values.clone() {
+            n += 1;
+            sum += v;
+        }
+        let mean = if n == 0 { 0.0 } else { sum / n as f64 };
+        let squares: f64 = values.into_iter().map(|v| (v - mean) * (v - mean)).sum();
+        Self { n, mean, variance: if n < 2 { 0.0 } else { squares / (n - 1) as f64 } }
+    }
+
+    /// Standard error of the mean; infinite for fewer than two numbers.
+    pub fn standard_error(&self) -> f64 {
+        if self.n < 2 { f64::INFINITY } else { (self.variance / self.n as f64).sqrt() }
+    }
+
+    /// Half the width of Student's interval for the mean at a confidence within (0, 1), `0.95`.
+    #[cfg(feature = "measure")]
+    pub fn half_width(&self, confidence: f64) -> f64 {
+        if self.n < 2 {
+            f64::INFINITY
+        } else {
+            student_quantile(0.5 + 0.5 * confidence, self.n - 1) * self.standard_error()
+        }
+    }
+
+    /// The bias that a two-sided test of the mean at `level` would find with 80 % power, in the values' unit.
+    #[cfg(feature = "measure")]
+    pub fn detectable(&self, level: f64) -> f64 {
+        if self.n < 2 {
+            return f64::INFINITY;
+        }
+        (student_quantile(1.0 - 0.5 * level, self.n - 1) + student_quantile(0.8, self.n - 1)) * self.standard_error()
+    }
+}
+
+/// The value below which Student's t with `freedom` degrees of freedom lies with probability `p`.
+#[cfg(feature = "measure")]
+pub fn student_quantile(p: f64, freedom: usize) -> f64 {
+    use statrs::distribution::{ContinuousCDF, StudentsT};
+    StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(p))
+}
+
+/// Two-sided probability of a t statistic at least this far from 0.
+#[cfg(feature = "measure")]
+pub fn student_p(t: f64, freedom: usize) -> f64 {
+    use statrs::distribution::{ContinuousCDF, StudentsT};
+    StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(1.0, |d| 2.0 * d.sf(t.abs()))
+}
+
+/// Probability of a chi-squared statistic at least this large.
+#[cfg(feature = "measure")]
+pub fn chi_squared_p(statistic: f64, freedom: usize) -> f64 {
+    use statrs::distribution::{ChiSquared, ContinuousCDF};
+    ChiSquared::new(freedom.max(1) as f64).map_or(1.0, |d| d.sf(statistic))
+}
+
+/// The level for each of `hypotheses` tests so that all together keep `level` (Sidak 1967).
+pub fn sidak(level: f64, hypotheses: usize) -> f64 {
+    1.0 - (1.0 - level).powf(1.0 / hypotheses.max(1) as f64)
+}
+
+/// The value under which the share `q` of the sorted `values` lies, by linear interpolation; NaN of none.
+pub fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let at = q.clamp(0.0, 1.0) * last as f64;
+    let low = at.floor() as usize;
+    sorted[low] + (sorted[(low + 1).min(last)] - sorted[low]) * (at - low as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_of_a_known_list() {
+        let m = Moments::of([1.0, 2.0, 3.0, 4.0]);
+        assert!((m.mean - 2.5).abs() < 1e-15 && (m.variance - 5.0 / 3.0).abs() < 1e-15);
+        assert!((quantile(&[1.0, 2.0, 3.0, 4.0], 0.5) - 2.5).abs() < 1e-15);
+    }
+
+    #[cfg(feature = "measure")]
+    #[test]
+    fn student_matches_the_printed_table() {
+        assert!((student_quantile(0.975, 15) - 2.131_450).abs() < 1e-5);
+        assert!((student_p(2.131_450, 15) - 0.05).abs() < 1e-6);
+        assert!((chi_squared_p(18.307, 10) - 0.05).abs() < 1e-5);
+    }
+}

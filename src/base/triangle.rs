@@ -1,0 +1,29 @@
+//! Triangle geometry: a uniform point.
+
+/// Barycentric weights `(b1, b2)` of the second and third corner for a uniform point on a triangle; `u` in `[0, 1)^2`.
+///
+/// Source: the lecture's map, `1 - sqrt(u)` for the first corner (Turk, Graphics Gems, 1990).
+#[inline]
+pub fn uniform_point(u: [f32; 2]) -> [f32; 2] {
+    let root = u[0].sqrt();
+    [root * (1.0 - u[1]), root * u[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::random::Stream;
+
+    #[test]
+    fn points_are_uniform_over_the_four_midpoint_triangles() {
+        let mut stream = Stream::keyed(&[11]);
+        let mut counts = [0u32; 4];
+        for _ in 0..40_000 {
+            let [b1, b2] = uniform_point(stream.uniform2());
+            let b0 = 1.0 - b1 - b2;
+            counts[[b0, b1, b2].iter().position(|&b| b > 0.5).unwrap_or(3)] += 1;
+        }
+        let chi2: f64 = counts.iter().map(|&c| (f64::from(c) - 1e4).powi(2) / 1e4).sum();
+        assert!(chi2 < 21.1, "chi-squared {chi2}, limit 21.1 (3 degrees of freedom, 1e-4), seed 11");
+    }
+}

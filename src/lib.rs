@@ -1,0 +1,4 @@
+//! Many-light strategies on night cities, measured: error against run time.
+
+pub mod base;
+pub mod scene;

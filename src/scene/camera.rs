@@ -1,0 +1,93 @@
+//! Which direction does each pixel look in?
+
+use crate::base::error::{Error, Result};
+use glam::{DVec3, Vec3};
+
+/// A pinhole camera that looks through pixel centres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    position: Vec3,
+    forward: DVec3,
+    right: DVec3,
+    down: DVec3,
+    width: u32,
+    height: u32,
+}
+
+impl Camera {
+    /// A camera at `position` that looks at `target` with +z up; `fov` is the vertical field of view in degrees.
+    pub fn new(position: Vec3, target: Vec3, fov: f32, width: u32, height: u32) -> Result<Self> {
+        if width == 0 || height == 0 || u64::from(width) * u64::from(height) > 1 << 28 {
+            return Err(Error::Invalid(format!(
+                "the film is {width} x {height} pixels; it needs at least 1 x 1 and at most 2^28 in all"
+            )));
+        }
+        if !(fov > 0.0 && fov < 180.0) {
+            return Err(Error::Invalid(format!("the field of view is {fov} degrees; it must lie between 0 and 180")));
+        }
+        let forward = (target - position).as_dvec3();
+        if !position.is_finite() || !target.is_finite() || forward.length() < 1e-6 {
+            return Err(Error::Invalid(format!(
+                "the camera at {position} needs a finite target away from it, not {target}"
+            )));
+        }
+        let forward = forward.normalize();
+        // Looking straight up or down, the top of the picture is towards +y.
+        let up = if forward.z.abs() > 0.999_999 { DVec3::Y } else { DVec3::Z };
+        let right = forward.cross(up).normalize();
+        let half_height = (f64::from(fov).to_radians() * 0.5).tan();
+        let down = forward.cross(right) * half_height;
+        let right = right * half_height * f64::from(width) / f64::from(height);
+        Ok(Self { position, forward, right, down, width, height })
+    }
+
+    /// The same view on another pixel grid; the vertical field of view stays.
+    pub fn with_resolution(&self, width: u32, height: u32) -> Result<Self> {
+        let fov = 2.0 * self.down.length().atan().to_degrees();
+        Self::new(self.position, self.position + self.forward.as_vec3() * 100.0, fov as f32, width, height)
+    }
+
+    /// Where the camera stands, in scene coordinates.
+    pub fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    /// Pixels across and down.
+    pub fn resolution(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// Unit direction through the centre of a pixel; `x` from the left, `y` from the top.
+    pub fn direction(&self, x: u32, y: u32) -> DVec3 {
+        let across = (f64::from(x) + 0.5) / f64::from(self.width) * 2.0 - 1.0;
+        let along = (f64::from(y) + 0.5) / f64::from(self.height) * 2.0 - 1.0;
+        (self.forward + self.right * across + self.down * along).normalize()
+    }
+
+    /// The camera's numbers, for hashing.
+    pub(crate) fn numbers(&self) -> [f64; 14] {
+        let (p, f, r, d) = (self.position.as_dvec3(), self.forward, self.right, self.down);
+        [p.x, p.y, p.z, f.x, f.y, f.z, r.x, r.y, r.z, d.x, d.y, d.z, f64::from(self.width), f64::from(self.height)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_look_where_expected() {
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 90.0, 3, 3).expect("a camera");
+        assert!((camera.direction(1, 1) - DVec3::Y).length() < 1e-12);
+        let top_right = camera.direction(2, 0);
+        assert!(top_right.x > 0.0 && top_right.z > 0.0, "{top_right}");
+    }
+
+    #[test]
+    fn impossible_cameras_are_refused() {
+        assert!(Camera::new(Vec3::ZERO, Vec3::Y, 90.0, 0, 3).is_err());
+        assert!(Camera::new(Vec3::ZERO, Vec3::ZERO, 90.0, 3, 3).is_err());
+        assert!(Camera::new(Vec3::ZERO, Vec3::Y, 180.0, 3, 3).is_err());
+        assert!(Camera::new(Vec3::NAN, Vec3::Y, 60.0, 3, 3).is_err());
+    }
+}

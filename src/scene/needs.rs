@@ -1,0 +1,1 @@
+//! What does this scene need, and what can be left out?
