@@ -7,6 +7,7 @@ pub mod city;
 pub mod influence;
 pub mod light;
 pub mod needs;
+pub mod receiver;
 #[cfg(feature = "recipe")]
 pub mod recipe;
 

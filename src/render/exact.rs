@@ -1,0 +1,88 @@
+//! The exact image, without any choice of lights.
+//!
+//! Point, spot and directional lights: the sum over all of them, one shadow ray each, accumulated in f64: no noise.
+//! Triangles: `points` stratified points a receiver on top of one a light, shared out by what each light could add, in
+//! two independent halves. Their mean is the reference; their difference says how noisy it still is.
+//!
+//! What a scene lets others leave out is never left out here.
+
+use crate::base::random::Stream;
+use crate::scene::light::{Kind, Light};
+use crate::scene::receiver::Receiver;
+use crate::shading::contribution::contribution;
+use crate::shading::importance::importance;
+use crate::visibility::stage::Stage;
+use glam::DVec3;
+
+/// Exact radiance of a receiver in cd/m^2: the noise-free sum and two independent estimates of the rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exact {
+    /// Point, spot and directional lights.
+    pub sum: DVec3,
+    /// Triangles, twice.
+    pub halves: [DVec3; 2],
+    /// Shadow rays cast.
+    pub rays: u64,
+}
+
+impl Exact {
+    /// The best estimate.
+    pub fn mean(&self) -> DVec3 {
+        self.sum + (self.halves[0] + self.halves[1]) * 0.5
+    }
+}
+
+/// The exact radiance of a receiver; `points` extra points a half for triangles, `seed` names their random numbers.
+pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
+    let mut result = Exact::default();
+    let lights = stage.scene().lights();
+    for light in lights.iter().filter(|light| light.kind() != Kind::Triangle) {
+        result.sum += shadowed(stage, at, light, [0.0; 2], &mut result.rays);
+    }
+    let total: f64 = triangles(lights).map(|light| f64::from(importance(light, at))).sum();
+    if total <= 0.0 {
+        return result;
+    }
+    for (half, sum) in result.halves.iter_mut().enumerate() {
+        let mut rng = Stream::keyed(&[seed, half as u64, u64::from(at.pixel), u64::from(points)]);
+        for light in triangles(lights) {
+            let share = f64::from(importance(light, at)) / total;
+            if share > 0.0 {
+                *sum += stratified(
+                    stage,
+                    at,
+                    light,
+                    (f64::from(points) * share).sqrt() as u32 + 1,
+                    &mut rng,
+                    &mut result.rays,
+                );
+            }
+        }
+    }
+    result
+}
+
+fn triangles(lights: &[Light]) -> impl Iterator<Item = &Light> {
+    lights.iter().filter(|light| light.kind() == Kind::Triangle)
+}
+
+/// Mean over a jittered grid of `side * side` points on a triangle.
+fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
+    let step = 1.0 / side as f32;
+    let mut sum = DVec3::ZERO;
+    for cell in 0..side * side {
+        let [u, v] = rng.uniform2();
+        let uv = [((cell % side) as f32 + u) * step, ((cell / side) as f32 + v) * step];
+        sum += shadowed(stage, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays);
+    }
+    sum / f64::from(side * side)
+}
+
+/// The contribution of a point of a light, shadow ray included.
+pub fn shadowed(stage: &Stage, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
+    let Ok(arrival) = contribution::<0b1111>(light, uv, at) else { return DVec3::ZERO };
+    *rays += 1;
+    let (origin, t_min, t_max) = stage.offset().segment(at, arrival.distance);
+    let visible = stage.occluders().visible(origin, arrival.direction, t_min, t_max);
+    if visible { arrival.radiance.as_dvec3() } else { DVec3::ZERO }
+}

@@ -1,0 +1,111 @@
+//! Running passes over all receivers: on one thread for a clock, on all of them for a picture.
+
+use super::counts::Counts;
+use super::film::Film;
+use super::kernel::{Kernel, kernel};
+use crate::base::random::RunKey;
+use crate::scene::light::Kind;
+use crate::scene::receiver::Receiver;
+use crate::strategy::erased::{AnySampler, PickBuffer, Worker};
+use crate::visibility::stage::Stage;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What passes are run with.
+#[derive(Clone, Copy)]
+pub struct Plan<'a> {
+    /// The scene made ready.
+    pub stage: &'a Stage,
+    /// The receivers to sample: all of the stage's, or some.
+    pub receivers: &'a [Receiver],
+    /// Who chooses the lights.
+    pub sampler: &'a dyn AnySampler,
+    /// Names the random numbers.
+    pub key: RunKey,
+}
+
+/// At most this many receivers are sampled at once.
+const TILE: usize = 64;
+
+/// A call aims at no more picks than this: 256 KiB of them, so that they stay in the second-level cache.
+const PICKS: usize = 16_384;
+
+impl Plan<'_> {
+    /// Adds `passes` more passes to `film`, on this thread.
+    pub fn run(&self, passes: u32, film: &mut Film) {
+        self.one_thread(kernel(self.stage.needs(), false), passes, film, &mut Counts::default());
+    }
+
+    /// As [`run`](Self::run), counting.
+    pub fn run_counting(&self, passes: u32, film: &mut Film) -> Counts {
+        let mut counts = Counts::default();
+        self.one_thread(kernel(self.stage.needs(), true), passes, film, &mut counts);
+        counts
+    }
+
+    /// As [`run`](Self::run), on all threads of the current pool: the same bytes.
+    pub fn run_parallel(&self, passes: u32, film: &mut Film) {
+        let kernel = kernel(self.stage.needs(), false);
+        let block = film.passes..film.passes + passes;
+        self.receivers.par_chunks(TILE).zip(film.sums.par_chunks_mut(TILE)).for_each_init(
+            || Tiles::new(self.sampler),
+            |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &block, sums, &mut Counts::default()),
+        );
+        film.passes += passes;
+    }
+
+    fn one_thread(&self, kernel: Kernel, passes: u32, film: &mut Film, counts: &mut Counts) {
+        let block = film.passes..film.passes + passes;
+        let mut tiles = Tiles::new(self.sampler);
+        tiles.run(self, kernel, self.receivers, &block, &mut film.sums, counts);
+        film.passes += passes;
+    }
+}
+
+/// One thread's worker and buffer.
+struct Tiles<'a> {
+    worker: Box<dyn Worker + 'a>,
+    picks: PickBuffer,
+    /// Receivers and passes of the next call, from the picks of the last.
+    size: (usize, u32),
+}
+
+impl<'a> Tiles<'a> {
+    fn new(sampler: &'a dyn AnySampler) -> Self {
+        Self { worker: sampler.worker(), picks: PickBuffer::default(), size: (1, 1) }
+    }
+
+    fn run(
+        &mut self,
+        plan: &Plan<'_>,
+        kernel: Kernel,
+        receivers: &[Receiver],
+        block: &Range<u32>,
+        sums: &mut [DVec3],
+        counts: &mut Counts,
+    ) {
+        let points = plan.stage.needs().has(Kind::Triangle);
+        let mut done = 0;
+        while done < receivers.len() {
+            let tile = done..(done + self.size.0).min(receivers.len());
+            let mut pass = block.start;
+            while pass < block.end {
+                let passes = pass..(pass + self.size.1).min(block.end);
+                let count = (passes.end - passes.start) as usize;
+                let (receivers, sums) = (&receivers[tile.clone()], &mut sums[tile.clone()]);
+                self.worker.fill(receivers, passes.clone(), plan.key, points, &mut self.picks);
+                kernel(plan.stage, receivers, count, &self.picks, sums, counts);
+                // A sampler that takes thousands of lights gets one receiver and few passes at a time.
+                let a_call = (self.picks.len() / (receivers.len() * count)).max(1);
+                let calls = (PICKS / a_call).max(1);
+                self.size.1 = (calls as u32).min(256);
+                pass = passes.end;
+                if pass == block.end {
+                    self.size.0 = (calls / (block.len()).min(256)).clamp(1, TILE);
+                }
+            }
+            done = tile.end;
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The combination made unbiased: lights out of range keep an exactly accounted chance.
+//!
+//! Besides the weighted picks among the lights in range, `tail` draws by flux over all lights. One that turns out to be
+//! in range is dropped, since the first part already stands for it; any other is weighted by its own probability. So
+//! each light is covered by exactly one of the two parts, and the sum of both is the whole.
+
+use super::influence::Range;
+use super::parameters::Arguments;
+use super::power::ByPower;
+use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, influence_pick};
+use crate::base::error::Result;
+use crate::base::random::Stream;
+use crate::scene::Scene;
+use crate::scene::influence::Cutoff;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use std::sync::Arc;
+
+/// `picks` weighted draws in range and `tail` draws by flux out of it.
+pub struct InfluenceTail {
+    range: Range,
+    picks: u32,
+    tail: u32,
+}
+
+impl Strategy for InfluenceTail {
+    const INFO: Info = Info {
+        name: "influence-tail",
+        summary: "influence-pick made unbiased: lights out of range are drawn by flux",
+        source: "this project",
+        claim: Claim::Unbiased,
+        role: Role::Choosing,
+    };
+    type Sampler = Sampler;
+
+    fn configure(arguments: &mut Arguments) -> Result<Self> {
+        let picks = arguments.count("picks", 1, 1..=1024, "lights in range drawn a pass")?;
+        let tail = arguments.count("tail", 1, 1..=1024, "draws a pass for the lights out of range")?;
+        Ok(Self { picks, tail, range: Range::configure(arguments)? })
+    }
+
+    fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
+        let scene = Arc::clone(context.stage.scene());
+        let cutoff = self.range.cutoff(&scene);
+        let near = influence_pick::Sampler::new(context, &self.range, self.picks);
+        Ok(Sampler { near, far: ByPower::new(context.stage)?, scene, cutoff, tail: self.tail })
+    }
+}
+
+/// [`InfluenceTail`] for a scene.
+pub struct Sampler {
+    scene: Arc<Scene>,
+    near: influence_pick::Sampler,
+    far: ByPower,
+    cutoff: Cutoff,
+    tail: u32,
+}
+
+impl Sampler {
+    /// Exactly what the hierarchy answers, for one light.
+    fn in_range(&self, light: LightId, at: &Receiver) -> bool {
+        self.cutoff.volume(&self.scene.lights()[light as usize]).is_none_or(|volume| volume.contains(at.position))
+    }
+}
+
+impl LightSampler for Sampler {
+    type Scratch = influence_pick::Listed;
+
+    fn arrive(&self, at: &Receiver, listed: &mut Self::Scratch) {
+        self.near.arrive(at, listed);
+    }
+
+    fn sample(&self, at: &Receiver, rng: &mut Stream, listed: &mut Self::Scratch, out: &mut Picks<'_>) {
+        self.near.sample(at, rng, listed, out);
+        for _ in 0..self.tail {
+            if let Some((light, pmf)) = self.far.pick(rng)
+                && !self.in_range(light, at)
+            {
+                out.push(light, 1.0 / (self.tail as f32 * pmf));
+            }
+        }
+    }
+
+    fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
+        for (light, pmf) in self.far.pmf().filter(|(light, _)| !self.in_range(*light, at)) {
+            counts[light as usize] += self.tail as f32 * pmf;
+        }
+        self.near.expected_counts(at, counts)
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.near.heap_bytes() + self.far.heap_bytes()
+    }
+}

@@ -1,0 +1,88 @@
+//! Lights by what arrives from them here: the best choice without knowing what is in between.
+//!
+//! Every light is weighed at every receiver: O(N), the yardstick of what cheaper strategies approximate.
+
+use super::parameters::Arguments;
+use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::discrete::Cumulative;
+use crate::base::error::Result;
+use crate::base::random::Stream;
+use crate::scene::Scene;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use crate::shading::importance::importance;
+use std::sync::Arc;
+
+/// `picks` independent draws, each light with a probability in proportion to its unshadowed irradiance.
+pub struct Intensity {
+    picks: u32,
+}
+
+impl Strategy for Intensity {
+    const INFO: Info = Info {
+        name: "intensity",
+        summary: "weighs every light by what arrives from it, nothing in between",
+        source: "the lecture, row 18; Shirley, Wang, Zimmerman, ACM TOG 15(1), 1996",
+        claim: Claim::Unbiased,
+        role: Role::Choosing,
+    };
+    type Sampler = Sampler;
+
+    fn configure(arguments: &mut Arguments) -> Result<Self> {
+        Ok(Self { picks: arguments.count("picks", 1, 1..=1024, "lights drawn a pass")? })
+    }
+
+    fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
+        let stage = context.stage;
+        Ok(Sampler { scene: Arc::clone(stage.scene()), lights: stage.lights().to_vec(), picks: self.picks })
+    }
+}
+
+/// [`Intensity`] for a scene.
+pub struct Sampler {
+    scene: Arc<Scene>,
+    lights: Vec<LightId>,
+    picks: u32,
+}
+
+impl LightSampler for Sampler {
+    type Scratch = Cumulative;
+
+    fn arrive(&self, at: &Receiver, sums: &mut Cumulative) {
+        sums.clear();
+        let table = self.scene.lights();
+        self.lights.iter().for_each(|&id| sums.push(importance(&table[id as usize], at)));
+    }
+
+    fn sample(&self, _at: &Receiver, rng: &mut Stream, sums: &mut Cumulative, out: &mut Picks<'_>) {
+        draw(sums, &self.lights, self.picks, rng, out);
+    }
+
+    fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
+        expect(&self.scene, &self.lights, self.picks, at, counts);
+        true
+    }
+
+    fn heap_bytes(&self) -> usize {
+        size_of_val(&self.lights[..])
+    }
+}
+
+/// `picks` independent draws of `lights` by the weights in `sums`.
+#[inline]
+pub(super) fn draw(sums: &Cumulative, lights: &[LightId], picks: u32, rng: &mut Stream, out: &mut Picks<'_>) {
+    for _ in 0..picks {
+        if let Some((index, pmf)) = sums.pick(rng.uniform64()) {
+            out.push(lights[index], (1.0 / (f64::from(picks) * pmf)) as f32);
+        }
+    }
+}
+
+/// Adds the expected counts of [`draw`] for lights weighed by importance.
+pub(super) fn expect(scene: &Scene, lights: &[LightId], picks: u32, at: &Receiver, counts: &mut [f32]) {
+    let weight = |&id: &LightId| f64::from(importance(&scene.lights()[id as usize], at));
+    let total: f64 = lights.iter().map(weight).sum();
+    if total > 0.0 {
+        lights.iter().for_each(|id| counts[*id as usize] += (f64::from(picks) * weight(id) / total) as f32);
+    }
+}

@@ -1,0 +1,143 @@
+//! How are lights chosen?
+//!
+//! A [`Strategy`] holds parameters; built for a scene it gives a [`LightSampler`], which returns *weighted lights*. The
+//! harness shades them, so strategies differ in choice alone. The contract is one identity: for every light `l` that
+//! can add anything at a receiver and every function `g` of the point on it,
+//!
+//! ```text
+//! E[ sum over picks of l of weight * g(uv) ] = integral of g      (g = 1: the weights of l sum to 1 on average)
+//! ```
+//!
+//! A strategy that breaks it by design says so in its [`Claim`].
+//!
+//! Adding one takes a file here and a line in [`registry`].
+
+pub mod all;
+pub mod erased;
+pub mod influence;
+pub mod influence_pick;
+pub mod influence_tail;
+pub mod intensity;
+pub mod null;
+pub mod parameters;
+pub mod power;
+pub mod registry;
+pub mod uniform;
+
+use crate::base::error::Result;
+use crate::base::random::Stream;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use crate::visibility::stage::Stage;
+use parameters::Arguments;
+
+/// One chosen light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// Which light.
+    pub light: LightId,
+    /// What its contribution is multiplied with; finite and 0 or more.
+    pub weight: f32,
+    /// The point on it, in `[0, 1)^2`.
+    pub uv: [f32; 2],
+}
+
+impl Pick {
+    /// The harness draws the point.
+    const DRAW: [f32; 2] = [-1.0, -1.0];
+}
+
+/// Where a sampler puts its picks.
+pub struct Picks<'a> {
+    list: &'a mut Vec<Pick>,
+}
+
+impl<'a> Picks<'a> {
+    /// Appends to `list`.
+    pub fn new(list: &'a mut Vec<Pick>) -> Self {
+        Self { list }
+    }
+
+    /// Picks a light; the harness draws the point on it.
+    #[inline]
+    pub fn push(&mut self, light: LightId, weight: f32) {
+        debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
+        self.list.push(Pick { light, weight, uv: Pick::DRAW });
+    }
+}
+
+/// What a strategy promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// The contract holds for every light.
+    Unbiased,
+    /// It does not, for this reason.
+    Biased(&'static str),
+}
+
+/// What part a strategy plays in a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It chooses among lights.
+    Choosing,
+    /// It does nothing: the floor of the harness's own cost.
+    Floor,
+    /// It takes every light: the ceiling.
+    Ceiling,
+}
+
+/// What a strategy is, apart from its parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Info {
+    /// Its name, as typed.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// What it promises.
+    pub claim: Claim,
+    /// Its part in a comparison.
+    pub role: Role,
+}
+
+/// What a sampler is built from.
+#[derive(Clone, Copy)]
+pub struct BuildContext<'a> {
+    /// The scene made ready; [`Stage::lights`] are the lights to choose from.
+    pub stage: &'a Stage,
+    /// For strategies that draw random numbers while building.
+    pub seed: u64,
+}
+
+/// How lights are chosen: the parameters, before any scene is known.
+pub trait Strategy: Sized + Send + Sync + 'static {
+    /// What it is.
+    const INFO: Info;
+    /// What it becomes for a scene.
+    type Sampler: LightSampler + 'static;
+    /// Reads the parameters; each has a default.
+    fn configure(arguments: &mut Arguments) -> Result<Self>;
+    /// Builds the sampler: the set-up phase.
+    fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler>;
+}
+
+/// Lights chosen for one scene: the query phase. No allocation once the scratch is warm, no locks.
+pub trait LightSampler: Send + Sync {
+    /// Storage of one worker, reused from call to call.
+    type Scratch: Default + Send;
+
+    /// Called when the harness comes to a receiver, before the passes that it samples there.
+    fn arrive(&self, _at: &Receiver, _scratch: &mut Self::Scratch) {}
+
+    /// Chooses lights for one pass at the receiver that was arrived at.
+    fn sample(&self, at: &Receiver, rng: &mut Stream, scratch: &mut Self::Scratch, out: &mut Picks<'_>);
+
+    /// Adds to `counts` (one a light of the scene) how often each light is expected to be pushed in a call of
+    /// [`sample`](Self::sample): the probability for one pick, k times it for k, 1 for a light that is listed. False if
+    /// that cannot be told (resampling), never to mean zero.
+    fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool;
+
+    /// Bytes on the heap, without those that the stage owns.
+    fn heap_bytes(&self) -> usize;
+}

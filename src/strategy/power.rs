@@ -1,0 +1,99 @@
+//! Bright lights more often, wherever they are.
+
+use super::parameters::Arguments;
+use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::colour::luminance;
+use crate::base::discrete::AliasTable;
+use crate::base::error::Result;
+use crate::base::random::Stream;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use crate::visibility::stage::Stage;
+
+/// `picks` independent draws, each light with a probability in proportion to its luminous flux.
+pub struct Power {
+    picks: u32,
+}
+
+impl Strategy for Power {
+    const INFO: Info = Info {
+        name: "power",
+        summary: "picks lights by their flux, from an alias table",
+        source: "Shirley, Wang, Zimmerman, ACM TOG 15(1), 1996; Vose, IEEE TSE 17(9), 1991",
+        claim: Claim::Unbiased,
+        role: Role::Choosing,
+    };
+    type Sampler = Sampler;
+
+    fn configure(arguments: &mut Arguments) -> Result<Self> {
+        Ok(Self { picks: arguments.count("picks", 1, 1..=1024, "lights drawn a pass")? })
+    }
+
+    fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
+        Ok(Sampler { lights: ByPower::new(context.stage)?, picks: self.picks })
+    }
+}
+
+/// The lights of a stage with an alias table over their flux.
+pub(super) struct ByPower {
+    lights: Vec<LightId>,
+    /// `None` where no light has any flux.
+    table: Option<AliasTable>,
+}
+
+impl ByPower {
+    pub(super) fn new(stage: &Stage) -> Result<Self> {
+        let scene = stage.scene();
+        let radius = scene.radius();
+        let lights = stage.lights().to_vec();
+        let flux = |&id: &LightId| f64::from(luminance(scene.lights()[id as usize].flux(radius)));
+        let weights: Vec<f64> = lights.iter().map(flux).collect();
+        let table = weights.iter().any(|&w| w > 0.0).then(|| AliasTable::new(&weights)).transpose()?;
+        Ok(Self { lights, table })
+    }
+
+    /// A light and its probability.
+    #[inline]
+    pub(super) fn pick(&self, rng: &mut Stream) -> Option<(LightId, f32)> {
+        let table = self.table.as_ref()?;
+        let index = table.pick(rng.bits());
+        Some((self.lights[index], table.pmf(index)))
+    }
+
+    /// All lights with their probabilities.
+    pub(super) fn pmf(&self) -> impl Iterator<Item = (LightId, f32)> {
+        let table = self.table.as_ref();
+        self.lights.iter().enumerate().filter_map(move |(i, &light)| Some((light, table?.pmf(i))))
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        size_of_val(&self.lights[..]) + self.table.as_ref().map_or(0, AliasTable::heap_bytes)
+    }
+}
+
+/// [`Power`] for a scene.
+pub struct Sampler {
+    lights: ByPower,
+    picks: u32,
+}
+
+impl LightSampler for Sampler {
+    type Scratch = ();
+
+    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
+        for _ in 0..self.picks {
+            if let Some((light, pmf)) = self.lights.pick(rng) {
+                out.push(light, 1.0 / (self.picks as f32 * pmf));
+            }
+        }
+    }
+
+    fn expected_counts(&self, _at: &Receiver, counts: &mut [f32]) -> bool {
+        self.lights.pmf().for_each(|(light, pmf)| counts[light as usize] += self.picks as f32 * pmf);
+        true
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.lights.heap_bytes()
+    }
+}

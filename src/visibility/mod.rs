@@ -1,0 +1,9 @@
+//! What can be seen from where: occluders and shadow rays, the points that the camera sees, the lights in range.
+
+mod bvh;
+pub mod influence;
+pub mod occluders;
+pub mod offset;
+pub mod reach;
+pub mod stage;
+pub mod view;

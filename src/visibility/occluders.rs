@@ -1,0 +1,109 @@
+//! Is there anything between two points?
+//!
+//! Surfaces and emissive triangles, both from both sides, in one `obvhs` hierarchy of binary nodes.
+
+use super::bvh;
+use crate::scene::Scene;
+use crate::scene::light::{Kind, LightId};
+use glam::{DVec3, Vec3, Vec3A};
+use obvhs::bvh2::Bvh2;
+use obvhs::ray::{Ray, RayHit};
+use obvhs::rt_triangle::RtTriangle;
+use obvhs::triangle::Triangle;
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Met {
+    /// A surface, by its index in the scene.
+    Surface(u32),
+    /// An emissive triangle.
+    Light(LightId),
+}
+
+/// Everything that blocks light.
+pub struct Occluders {
+    bvh: Bvh2,
+    /// In the hierarchy's order.
+    triangles: Vec<RtTriangle>,
+    /// What each of `triangles` is.
+    met: Vec<Met>,
+}
+
+impl Occluders {
+    /// Builds the hierarchy of a scene's surfaces and emissive triangles.
+    pub fn new(scene: &Scene) -> Self {
+        let emitters = scene.lights().iter().zip(0u32..).filter(|(light, _)| light.kind() == Kind::Triangle);
+        let (corners, met): (Vec<[Vec3; 3]>, Vec<Met>) = (scene.surfaces().iter().zip(0..))
+            .map(|(surface, i)| (surface.corners, Met::Surface(i)))
+            .chain(emitters.map(|(light, id)| (light.corners(), Met::Light(id))))
+            .unzip();
+        let bvh = bvh::build(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))), 4);
+        let order = || bvh.primitive_indices.iter().map(|&i| i as usize);
+        let triangles = order().map(|i| RtTriangle::from(&triangle(corners[i]))).collect();
+        let met = order().map(|i| met[i]).collect();
+        Self { bvh, triangles, met }
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// Bytes on the heap.
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&self.bvh.nodes[..])
+            + size_of_val(&self.bvh.primitive_indices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.met[..])
+    }
+
+    /// The hierarchy and its triangles in its order, for a measurement of the bare library.
+    #[doc(hidden)]
+    pub fn parts(&self) -> (&Bvh2, &[RtTriangle]) {
+        (&self.bvh, &self.triangles)
+    }
+
+    /// Whether nothing lies on the ray within `[t_min, t_max)`; `direction` is a unit vector.
+    #[inline]
+    pub fn visible(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> bool {
+        self.bvh.ray_traverse_miss(ray(origin, direction, t_min, t_max), |ray, i| self.triangles[i].intersect(ray))
+    }
+
+    /// The first thing on a ray and its distance, which is exact to f32 rounding of the triangle's plane.
+    pub fn first(&self, origin: Vec3, direction: DVec3) -> Option<(Met, f64)> {
+        let ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
+        // A fresh record: a used one would turn a miss of the root into a hit.
+        let mut hit = RayHit::none();
+        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| self.triangles[i].intersect(ray)) {
+            return None;
+        }
+        let index = hit.primitive_id as usize;
+        let triangle = &self.triangles[index];
+        let v0 = Vec3::from(triangle.v0).as_dvec3();
+        let normal = Vec3::from(triangle.ng).as_dvec3();
+        let t = normal.dot(v0 - origin.as_dvec3()) / normal.dot(direction);
+        Some((self.met[index], if t.is_finite() { t } else { f64::from(hit.t) }))
+    }
+}
+
+fn triangle([v0, v1, v2]: [Vec3; 3]) -> Triangle {
+    Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() }
+}
+
+/// The one place where rays are made.
+///
+/// The library turns a direction component under 1.2e-7 into an inverse of 8.4e6, so that a ray along an axis leaves a
+/// box 84 m after it came within 1e-5 m of its side. Here the inverse of such a component is 1e30: finite, so that
+/// 0 * inverse stays 0. Adding zero turns -0 into +0, which the library's wide hierarchy takes for a negative
+/// direction in one place and not in the other.
+#[inline]
+fn ray(origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> Ray {
+    let direction = Vec3A::from(direction) + Vec3A::ZERO;
+    let inverse = direction.recip().clamp(Vec3A::splat(-1e30), Vec3A::splat(1e30));
+    Ray { origin: origin.into(), direction, inv_direction: inverse, tmin: t_min, tmax: t_max }
+}

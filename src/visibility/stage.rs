@@ -1,0 +1,86 @@
+//! A scene made ready to be measured: occluders built, receivers found, what it does not need left out.
+
+use super::occluders::Occluders;
+use super::offset::Offset;
+use super::reach;
+use super::view::View;
+use crate::scene::Scene;
+use crate::scene::light::LightId;
+use crate::scene::needs::Needs;
+use crate::scene::receiver::Receiver;
+use std::sync::Arc;
+
+/// Everything that strategies and renderers share; built once a scene, off every clock.
+pub struct Stage {
+    scene: Arc<Scene>,
+    occluders: Occluders,
+    view: View,
+    needs: Needs,
+    lights: Vec<LightId>,
+    offset: Offset,
+}
+
+/// Whether a stage leaves out what its scene provably does not need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LeaveOut {
+    /// Leave it out.
+    #[default]
+    Yes,
+    /// Keep everything: for proof that nothing is lost.
+    No,
+}
+
+impl Stage {
+    /// Prepares a scene.
+    pub fn new(scene: Scene, leave_out: LeaveOut, offset: Offset) -> Self {
+        let occluders = Occluders::new(&scene);
+        let view = View::new(&scene, &occluders);
+        let (needs, lights) = match leave_out {
+            LeaveOut::Yes => (Needs::of(&scene), reach::reaching(&scene, view.receivers())),
+            LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
+        };
+        Self { scene: Arc::new(scene), occluders, view, needs, lights, offset }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// What blocks light.
+    pub fn occluders(&self) -> &Occluders {
+        &self.occluders
+    }
+
+    /// What the camera sees.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The visible points.
+    pub fn receivers(&self) -> &[Receiver] {
+        self.view.receivers()
+    }
+
+    /// What the scene needs of a renderer.
+    pub fn needs(&self) -> Needs {
+        self.needs
+    }
+
+    /// The lights to choose from, in table order: all, or those that can touch a receiver.
+    pub fn lights(&self) -> &[LightId] {
+        &self.lights
+    }
+
+    /// How shadow rays keep off their own surfaces.
+    pub fn offset(&self) -> Offset {
+        self.offset
+    }
+
+    /// The same stage with another set of needs: for measuring what leaving out saves.
+    #[doc(hidden)]
+    pub fn with_needs(mut self, needs: Needs) -> Self {
+        self.needs = needs;
+        self
+    }
+}

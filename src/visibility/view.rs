@@ -1,0 +1,115 @@
+//! What does each pixel of the camera see?
+
+use super::occluders::{Met, Occluders};
+use crate::scene::Scene;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// What a pixel sees through its centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// Nothing.
+    Sky,
+    /// The front of an emissive triangle.
+    Emitter(LightId),
+    /// The dark back of an emissive triangle.
+    EmitterBack,
+    /// A surface: its receiver's index.
+    Receiver(u32),
+}
+
+/// All that a camera sees.
+pub struct View {
+    width: u32,
+    height: u32,
+    receivers: Vec<Receiver>,
+    pixels: Vec<Seen>,
+}
+
+/// Pixels are walked in squares of this side, so that neighbours in the list see the same part of the scene.
+const SQUARE: u32 = 8;
+
+impl View {
+    /// Casts one ray through each pixel's centre.
+    pub fn new(scene: &Scene, occluders: &Occluders) -> Self {
+        let (width, height) = scene.camera().resolution();
+        let squares: Vec<(u32, u32)> = (0..height)
+            .step_by(SQUARE as usize)
+            .flat_map(|y| (0..width).step_by(SQUARE as usize).map(move |x| (x, y)))
+            .collect();
+        let found: Vec<(u32, Found)> = squares
+            .par_iter()
+            .flat_map_iter(|&(x0, y0)| {
+                let rows = y0..(y0 + SQUARE).min(height);
+                rows.flat_map(move |y| (x0..(x0 + SQUARE).min(width)).map(move |x| (x, y)))
+            })
+            .map(|(x, y)| (y * width + x, look(scene, occluders, x, y)))
+            .collect();
+        let mut receivers = Vec::new();
+        let mut pixels = vec![Seen::Sky; found.len()];
+        for (pixel, found) in found {
+            pixels[pixel as usize] = match found {
+                Found::Other(seen) => seen,
+                Found::Surface(receiver) => {
+                    receivers.push(receiver);
+                    Seen::Receiver(receivers.len() as u32 - 1)
+                }
+            };
+        }
+        Self { width, height, receivers, pixels }
+    }
+
+    /// Pixels across and down.
+    pub fn resolution(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// The visible points, neighbours together.
+    pub fn receivers(&self) -> &[Receiver] {
+        &self.receivers
+    }
+
+    /// What each pixel sees, row by row from the top.
+    pub fn pixels(&self) -> &[Seen] {
+        &self.pixels
+    }
+
+    /// Shares of the pixels that see the sky and that see an emitter from either side.
+    pub fn shares(&self) -> (f64, f64) {
+        let share = |wanted: fn(&Seen) -> bool| {
+            self.pixels.iter().filter(|seen| wanted(seen)).count() as f64 / self.pixels.len().max(1) as f64
+        };
+        (share(|s| *s == Seen::Sky), share(|s| matches!(s, Seen::Emitter(_) | Seen::EmitterBack)))
+    }
+}
+
+enum Found {
+    Other(Seen),
+    Surface(Receiver),
+}
+
+fn look(scene: &Scene, occluders: &Occluders, x: u32, y: u32) -> Found {
+    let (eye, direction) = (scene.camera().position(), scene.camera().direction(x, y));
+    let Some((met, t)) = occluders.first(eye, direction) else { return Found::Other(Seen::Sky) };
+    let index = match met {
+        Met::Surface(index) => index,
+        Met::Light(id) => {
+            let front = scene.lights()[id as usize].c.as_dvec3().dot(direction) < 0.0;
+            return Found::Other(if front { Seen::Emitter(id) } else { Seen::EmitterBack });
+        }
+    };
+    let surface = &scene.surfaces()[index as usize];
+    let [p, q, r] = surface.corners.map(Vec3::as_dvec3);
+    let normal = (q - p).cross(r - p).normalize();
+    let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
+    Found::Surface(Receiver {
+        position: (eye.as_dvec3() + direction * t).as_vec3(),
+        normal: normal.as_vec3(),
+        view: -direction.as_vec3(),
+        albedo: scene.materials()[surface.material as usize].albedo,
+        pixel: y * scene.camera().resolution().0 + x,
+        surface: index,
+    })
+}
