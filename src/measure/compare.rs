@@ -51,8 +51,12 @@ pub fn compare(
 ) -> Result<(SceneRecord, Vec<Row>)> {
     let target = Target::new(stage);
     let pilots = pilots(&target, options, watch)?;
-    let ladders: Vec<Vec<u32>> =
-        options.strategies.iter().zip(&pilots).map(|(strategy, pilot)| ladder(strategy, pilot.as_ref().ok(), stage, options, before)).collect();
+    let ladders: Vec<Vec<u32>> = options
+        .strategies
+        .iter()
+        .zip(&pilots)
+        .map(|(strategy, pilot)| ladder(strategy, pilot.as_ref().ok(), stage, options, before))
+        .collect();
     let best = options.strategies.iter().zip(&pilots).zip(&ladders).filter_map(|((strategy, pilot), ladder)| {
         let pilot = pilot.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
         Some(pilot.expected_rel_mse(*ladder.last()?))
@@ -60,15 +64,28 @@ pub fn compare(
     // A hundredth of the best row's error, with some room for the pilot's own noise; never below what f32 can hold.
     let wanted = best.fold(1e-2, f64::min).max(1e-8) / 150.0;
     let reference = Reference::compute(&target, wanted, options.cache, watch)?;
-    let mut comparison = Comparison { target: &target, reference: &reference, options, ladders: &ladders, rows: Vec::new(), films: HashMap::new() };
+    let mut comparison = Comparison {
+        target: &target,
+        reference: &reference,
+        options,
+        ladders: &ladders,
+        rows: Vec::new(),
+        films: HashMap::new(),
+    };
     comparison.run(before, rows, watch)?;
 
     let summaries: Vec<Summary> = (0..options.strategies.len()).map(|i| comparison.summary(i, &pilots[i])).collect();
     let mut notes = stage.scene().notes().to_vec();
-    let least = summaries.iter().filter(|s| s.chooses && s.rel_mse.mean.is_finite()).map(|s| s.rel_mse.mean).fold(f64::INFINITY, f64::min);
+    let least = summaries
+        .iter()
+        .filter(|s| s.chooses && s.rel_mse.mean.is_finite())
+        .map(|s| s.rel_mse.mean)
+        .fold(f64::INFINITY, f64::min);
     let own = reference.truth.own_rel_mse();
     if own * 100.0 > least {
-        notes.push(format!("the reference's own relMSE {own:.1e} is more than a hundredth of the best row's {least:.1e}"));
+        notes.push(format!(
+            "the reference's own relMSE {own:.1e} is more than a hundredth of the best row's {least:.1e}"
+        ));
     }
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
@@ -80,7 +97,13 @@ pub fn compare(
     Ok((record(&target, file, &reference, notes, summaries), comparison.rows))
 }
 
-fn record(target: &Target<'_>, file: &str, reference: &Reference, notes: Vec<String>, summaries: Vec<Summary>) -> SceneRecord {
+fn record(
+    target: &Target<'_>,
+    file: &str,
+    reference: &Reference,
+    notes: Vec<String>,
+    summaries: Vec<Summary>,
+) -> SceneRecord {
     let stage = target.stage;
     let (width, height) = stage.view().resolution();
     let (sky_share, emitter_share) = stage.view().shares();
@@ -125,8 +148,16 @@ fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> R
 }
 
 /// The budgets of a strategy: those of its rows so far where a comparison is resumed, or what its pilot says.
-fn ladder(strategy: &Configured, pilot: Option<&Pilot>, stage: &Stage, options: &Options<'_>, before: &[Row]) -> Vec<u32> {
-    let so_far = before.iter().filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name() && row.error.is_none());
+fn ladder(
+    strategy: &Configured,
+    pilot: Option<&Pilot>,
+    stage: &Stage,
+    options: &Options<'_>,
+    before: &[Row],
+) -> Vec<u32> {
+    let so_far = before
+        .iter()
+        .filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name() && row.error.is_none());
     match (so_far.map(|row| row.passes).max(), pilot) {
         (Some(most), _) => (0..31).map(|rung| 1 << rung).take_while(|&passes| passes <= most).collect(),
         (None, Some(pilot)) => pilot.ladder(options.budget),
@@ -216,7 +247,9 @@ impl Comparison<'_> {
                 let Some(&last) = self.ladders[i].last() else { continue };
                 let rows: Vec<&Row> = before
                     .iter()
-                    .filter(|r| r.scene == self.scene() && r.strategy == strategy.name() && r.run == run && r.error.is_none())
+                    .filter(|r| {
+                        r.scene == self.scene() && r.strategy == strategy.name() && r.run == run && r.error.is_none()
+                    })
                     .collect();
                 let film = films.load(self.scene(), strategy.name(), run, self.target.receivers.len());
                 match film.filter(|_| rows.iter().any(|row| row.passes == last)) {
@@ -229,7 +262,7 @@ impl Comparison<'_> {
             }
         }
         // Fisher and Yates, so that no strategy runs while the machine is at its slowest throughout.
-        let mut rng = Stream::keyed(&[self.options.seed, 0x6f72_6465_72]);
+        let mut rng = Stream::keyed(&[self.options.seed, u64::from_le_bytes(*b"in order")]);
         for i in (1..units.len()).rev() {
             units.swap(i, rng.below(i + 1));
         }
@@ -287,13 +320,17 @@ impl Comparison<'_> {
             Err(error) => return failed(error.to_string()),
         };
         let Some(&last) = self.ladders[index].last() else {
-            return Summary { skipped: Some(format!("skipped: about {:.2} s a pass", pilot.first_pass_s())), ..blank(strategy) };
+            return Summary {
+                skipped: Some(format!("skipped: about {:.2} s a pass", pilot.first_pass_s())),
+                ..blank(strategy)
+            };
         };
         let mine = self.rows.iter().filter(|row| row.strategy == strategy.name());
         if let Some(error) = mine.clone().find_map(|row| row.error.clone()) {
             return failed(error);
         }
-        let mut rows: Vec<&Row> = mine.filter(|row| row.passes == last && self.films.contains_key(&(index, row.run))).collect();
+        let mut rows: Vec<&Row> =
+            mine.filter(|row| row.passes == last && self.films.contains_key(&(index, row.run))).collect();
         rows.sort_by_key(|row| row.run);
         let images: Vec<Vec<Vec3>> = rows.iter().map(|row| self.films[&(index, row.run)].clone()).collect();
         summarise(strategy, pilot, &self.reference.truth, &rows, &images)

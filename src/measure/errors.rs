@@ -35,7 +35,8 @@ impl Truth {
     ///
     /// Epsilon, per channel, is 0.01 times the square of the mean over the receivers.
     pub fn new(halves: [Vec<Vec3>; 2]) -> Self {
-        let mean: Vec<Vec3> = halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
+        let mean: Vec<Vec3> =
+            halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
         let average = mean.iter().fold(DVec3::ZERO, |sum, x| sum + x.as_dvec3()) / mean.len().max(1) as f64;
         let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
         by_luminance.sort_by(|&a, &b| luminance(mean[a as usize]).total_cmp(&luminance(mean[b as usize])));

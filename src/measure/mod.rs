@@ -8,6 +8,7 @@ pub mod compare;
 pub mod environment;
 pub mod errors;
 pub mod films;
+pub mod inspect;
 pub mod observer;
 pub mod plan;
 pub mod reference;

@@ -72,13 +72,22 @@ impl Pilot {
         };
         let bias2 = truth.mean_over(both).max(0.0);
         let counts = plan(3).run_counting(PASSES, &mut Film::new(few.receivers.len()));
-        Ok(Self { arrive_s: (one - pass_s).max(0.0), pass_s, variance: (errors - bias2).max(0.0) * f64::from(PASSES), bias2, counts })
+        Ok(Self {
+            arrive_s: (one - pass_s).max(0.0),
+            pass_s,
+            variance: (errors - bias2).max(0.0) * f64::from(PASSES),
+            bias2,
+            counts,
+        })
     }
 
     /// The budgets that fit, in passes: 1, 2, 4 and so on; none if one pass is too long.
     pub fn ladder(&self, budget: Budget) -> Vec<u32> {
         let seconds = |rung: u32| f64::from(rung + 1) * self.arrive_s + f64::from(1u32 << rung) * self.pass_s;
-        (0..31).take_while(|&rung| 1 << rung <= budget.passes && seconds(rung) <= budget.seconds).map(|rung| 1 << rung).collect()
+        (0..31)
+            .take_while(|&rung| 1 << rung <= budget.passes && seconds(rung) <= budget.seconds)
+            .map(|rung| 1 << rung)
+            .collect()
     }
 
     /// Expected CPU seconds of the first pass.

@@ -64,7 +64,8 @@ pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&R
     let energy = moments(|r| r.energy_ratio);
     let own = truth.own_energy_error();
     // The reference's own error does not go away with more runs.
-    summary.mean_bias = Interval { mean: energy.mean - 1.0, half_width: energy.half_width(CONFIDENCE).hypot(2.0 * own) };
+    summary.mean_bias =
+        Interval { mean: energy.mean - 1.0, half_width: energy.half_width(CONFIDENCE).hypot(2.0 * own) };
     summary.detectable_bias = energy.detectable(1.0 - CONFIDENCE).hypot(2.8 * own);
     let spread = Spread::of(truth, images);
     summary.rel_bias2 = spread.rel_bias2();

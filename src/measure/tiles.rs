@@ -37,7 +37,12 @@ impl TileFile {
             tiles[tile] = Some(values);
             good = end;
         }
-        let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(Error::io("write", &path))?;
+        let file = OpenOptions::new()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(&path)
+            .map_err(Error::io("write", &path))?;
         file.set_len(good as u64).map_err(Error::io("write", &path))?;
         let mut opened = Self { path, file };
         use std::io::Seek;
@@ -74,7 +79,7 @@ fn record(bytes: &[u8], start: usize, receivers: usize) -> Option<(usize, Vec<Ex
     if bytes.get(end..end + 16)? != checksum(&bytes[start..end]) {
         return None;
     }
-    let number = |at: usize| bytes[at..at + 8].try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);
+    let number = |at: usize| bytes[at..at + 8].try_into().map_or(f64::NAN, f64::from_le_bytes);
     let vector = |at: usize| DVec3::new(number(at), number(at + 8), number(at + 16));
     let values = (start + 8..end).step_by(VALUE).map(|at| Exact {
         sum: vector(at),
