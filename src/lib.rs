@@ -1,6 +1,8 @@
 //! Many-light strategies on night cities, measured: error against run time.
 
 pub mod base;
+#[cfg(feature = "cli")]
+pub mod cli;
 #[cfg(feature = "image")]
 pub mod image;
 #[cfg(feature = "measure")]
