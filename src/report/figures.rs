@@ -6,8 +6,8 @@ use std::cmp::Ordering;
 /// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative.
 pub fn bias2(summary: &Summary) -> f64 {
     match summary.claim {
-        Claim::Biased { .. } | Claim::Floor => summary.rel_bias2.mean.max(0.0),
-        Claim::Unbiased | Claim::Ceiling => 0.0,
+        Claim::Biased { .. } => summary.rel_bias2.mean.max(0.0),
+        Claim::Unbiased | Claim::Floor | Claim::Ceiling => 0.0,
     }
 }
 

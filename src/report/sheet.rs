@@ -42,7 +42,8 @@ impl Sheet {
     /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its reason.
     pub(super) fn new(title: &'static str, summaries: &[&Summary], columns: &[Column], below: Vec<String>) -> Self {
         let lines = summaries.iter().map(|summary| {
-            let cells = columns.iter().map(|c| if figures::measured(summary) { (c.cell)(summary) } else { String::new() });
+            let cells =
+                columns.iter().map(|c| if figures::measured(summary) { (c.cell)(summary) } else { String::new() });
             Line {
                 strategy: summary.strategy.clone(),
                 remark: remark(summary),
@@ -57,7 +58,7 @@ impl Sheet {
     pub(super) fn text(&self) -> String {
         let style = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
         let mut table = Table::new();
-        table.load_style(style).set_content_arrangement(ContentArrangement::Disabled).force_no_tty();
+        table.load_style(style).set_content_arrangement(ContentArrangement::Disabled);
         table.set_header(std::iter::once("strategy").chain(self.heads.iter().copied()));
         for (at, line) in self.lines.iter().enumerate() {
             if at > 0 && self.lines[at - 1].group != line.group {

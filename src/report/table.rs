@@ -105,7 +105,8 @@ fn against_time(summaries: &[&Summary]) -> Sheet {
         Column::new("CPU s", |s| short(s.cpu_s)),
     ]);
     let mut below = vec![
-        "V is variance x CPU seconds of sampling; s to an error is set-up + V / (error - b²), at least one pass.".to_owned(),
+        "V is variance x CPU seconds of sampling; s to an error is set-up + V / (error - b²), at least one pass."
+            .to_owned(),
     ];
     if summaries.iter().any(|s| is_biased(s)) {
         below.push("b² is squared bias in units of relMSE; from t* = V / b² on, bias outweighs noise.".to_owned());
