@@ -11,7 +11,7 @@ use crate::measure::plan::Budget;
 use crate::record::store::{RowWriter, create_folder, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
 use crate::report;
-use crate::report::table::table;
+use crate::report::table;
 use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
 use crate::visibility::stage::Stage;
 use clap::Args;
@@ -60,10 +60,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
         // Every recipe is read before anything is measured: a mistake in the last must not cost an hour.
-        let scenes = arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
+        let scenes =
+            arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
         let names: Vec<&str> = scenes.iter().map(|scene| scene.name()).collect();
         if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-            return Err(Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into());
+            return Err(
+                Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
+            );
         }
         let mut session = Session::open(arguments, &names)?;
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
@@ -92,10 +95,17 @@ impl Session {
         if let Some(folder) = arguments.out.as_deref().filter(|folder| folder.join("run.json").exists()) {
             let earlier = read_run(folder)?;
             if earlier.finished {
-                return Err(Error::Invalid(format!("{} holds a finished comparison; results are never overwritten: name another folder", folder.display())));
+                return Err(Error::Invalid(format!(
+                    "{} holds a finished comparison; results are never overwritten: name another folder",
+                    folder.display()
+                )));
             }
             if (earlier.seed, earlier.repeats) != (record.seed, record.repeats) || earlier.machine != record.machine {
-                return Err(Error::Invalid(format!("{} holds another comparison, begun as `{}`; resume that, or name another folder", folder.display(), earlier.command)));
+                return Err(Error::Invalid(format!(
+                    "{} holds another comparison, begun as `{}`; resume that, or name another folder",
+                    folder.display(),
+                    earlier.command
+                )));
             }
             let (rows, before) = RowWriter::resume(folder)?;
             return Ok(Self { folder: folder.to_owned(), record, rows, before });
@@ -112,7 +122,15 @@ impl Session {
         Ok(Self { folder, record, rows, before: Vec::new() })
     }
 
-    fn scene(&mut self, stage: &Stage, file: &Path, arguments: &Arguments, strategies: &[Configured], threads: u32, progress: &Progress) -> anyhow::Result<()> {
+    fn scene(
+        &mut self,
+        stage: &Stage,
+        file: &Path,
+        arguments: &Arguments,
+        strategies: &[Configured],
+        threads: u32,
+        progress: &Progress,
+    ) -> anyhow::Result<()> {
         let options = Options {
             strategies,
             budget: Budget { passes: arguments.budget, seconds: arguments.seconds },
@@ -123,11 +141,15 @@ impl Session {
             folder: &self.folder,
         };
         let file = file.display().to_string();
-        let (scene, rows) = compare(stage, &file, &options, &self.before, &mut self.rows, progress).inspect_err(|error| {
-            if matches!(error, Error::Interrupted) {
-                eprintln!("finished rows are in {0}; the same command with --out {0} goes on from there", self.folder.display());
-            }
-        })?;
+        let (scene, rows) =
+            compare(stage, &file, &options, &self.before, &mut self.rows, progress).inspect_err(|error| {
+                if matches!(error, Error::Interrupted) {
+                    eprintln!(
+                        "finished rows are in {0}; the same command with --out {0} goes on from there",
+                        self.folder.display()
+                    );
+                }
+            })?;
         self.record.scenes.push(scene);
         write_run(&self.folder, &self.record)?;
         if let Some(scene) = self.record.scenes.last() {
@@ -162,5 +184,8 @@ fn record(arguments: &Arguments) -> RunRecord {
 }
 
 fn seconds(text: &str) -> std::result::Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| *x > 0.0 && *x <= 86_400.0).ok_or_else(|| "a number above 0, at most 86400, is right".into())
+    text.parse()
+        .ok()
+        .filter(|x: &f64| *x > 0.0 && *x <= 86_400.0)
+        .ok_or_else(|| "a number above 0, at most 86400, is right".into())
 }

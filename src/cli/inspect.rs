@@ -4,8 +4,8 @@ use super::scene::{SceneOptions, pool, threads};
 use super::{Outcome, print};
 use crate::measure::inspect::{Inspection, Part, inspect};
 use clap::Args;
-use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
-use comfy_table::{CellAlignment, Table};
+
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -42,7 +42,11 @@ fn text(i: &Inspection) -> Result<String, std::fmt::Error> {
     let (width, height) = i.resolution;
     let exposure = i.ev100.map_or_else(|| "exposure 1".to_owned(), |ev| format!("EV100 {ev}"));
     writeln!(out, "{} ({})", i.name, i.hash)?;
-    writeln!(out, "{x:.0} x {y:.0} x {z:.0} m, {width} x {height} pixels, {exposure}, {} surface triangles\n", i.surfaces)?;
+    writeln!(
+        out,
+        "{x:.0} x {y:.0} x {z:.0} m, {width} x {height} pixels, {exposure}, {} surface triangles\n",
+        i.surfaces
+    )?;
     writeln!(out, "{}\n", parts("kind", &i.kinds))?;
     if !i.groups.is_empty() {
         writeln!(out, "{}\n", parts("part", &i.groups))?;
@@ -81,7 +85,12 @@ fn text(i: &Inspection) -> Result<String, std::fmt::Error> {
 
 fn parts(head: &str, parts: &[Part]) -> Table {
     let mut table = Table::new();
-    table.load_preset(UTF8_HORIZONTAL_ONLY).set_header([head, "lights", "flux klm", "share of flux"]);
+    table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'))).set_header([
+        head,
+        "lights",
+        "flux klm",
+        "share of flux",
+    ]);
     for part in parts {
         table.add_row([
             part.name.clone(),

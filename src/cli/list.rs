@@ -30,7 +30,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         What::Scenes => scenes(Path::new("scenes"))?,
     };
     if arguments.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&list.iter().map(|item| &item.json).collect::<Vec<_>>())?))?;
+        print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&list.iter().map(|item| &item.json).collect::<Vec<_>>())?
+        ))?;
     } else {
         list.iter().try_for_each(|item| print(&item.text))?;
     }

@@ -2,9 +2,8 @@
 
 use super::progress::Progress;
 use super::render::save;
-use super::scene::{SceneOptions, pool, threads};
+use super::scene::{SceneOptions, check_output, pool, threads};
 use super::{Outcome, print};
-use crate::image;
 use crate::measure::reference::Reference;
 use crate::measure::target::{MOST_PAIRS, Target};
 use clap::Args;
@@ -31,7 +30,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
-    image::check(&arguments.output)?;
+    check_output(&arguments.output)?;
     let progress = Progress::new()?;
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;
@@ -58,5 +57,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
 }
 
 fn noise(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| (1e-12..=1.0).contains(x)).ok_or_else(|| "a number from 1e-12 to 1 is right".into())
+    text.parse()
+        .ok()
+        .filter(|x: &f64| (1e-12..=1.0).contains(x))
+        .ok_or_else(|| "a number from 1e-12 to 1 is right".into())
 }

@@ -1,6 +1,6 @@
 //! `citylights render`: one picture by one strategy.
 
-use super::scene::{SceneOptions, pool, threads};
+use super::scene::{SceneOptions, check_output, pool, threads};
 use super::{Outcome, print};
 use crate::base::error::{Error, Result};
 use crate::base::random::RunKey;
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let strategy = registry::parse(&arguments.strategy)?;
     if let Some(output) = &arguments.output {
-        image::check(output)?;
+        check_output(output)?;
     }
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;

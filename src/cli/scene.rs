@@ -2,6 +2,7 @@
 
 use crate::base::error::Error;
 use crate::base::names;
+use crate::image::Format;
 use crate::scene::Scene;
 use crate::scene::recipe::{self, Overrides};
 use crate::visibility::offset::Offset;
@@ -55,6 +56,17 @@ impl SceneOptions {
     }
 }
 
+/// Refuses a picture that could not be written, before the work instead of after it.
+pub(super) fn check_output(file: &Path) -> Result<(), Error> {
+    Format::of(file)?;
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("cannot write {}: there is no folder {}", file.display(), folder.display())))
+    }
+}
+
 /// A pool of `threads` threads; all cores where none is given.
 pub(super) fn pool(threads: Option<u32>) -> anyhow::Result<rayon::ThreadPool> {
     Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0) as usize).build()?)
@@ -67,11 +79,16 @@ pub(super) fn threads(text: &str) -> Result<u32, String> {
 
 fn resolution(text: &str) -> Result<(u32, u32), String> {
     let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    parsed.filter(|&(w, h): &(u32, u32)| w > 0 && h > 0).ok_or_else(|| "two whole numbers of 1 or more are right, as 240x135".into())
+    parsed
+        .filter(|&(w, h): &(u32, u32)| w > 0 && h > 0)
+        .ok_or_else(|| "two whole numbers of 1 or more are right, as 240x135".into())
 }
 
 fn finite(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_finite() && x.abs() <= 60.0).ok_or_else(|| "a number from -60 to 60 is right".into())
+    text.parse()
+        .ok()
+        .filter(|x: &f32| x.is_finite() && x.abs() <= 60.0)
+        .ok_or_else(|| "a number from -60 to 60 is right".into())
 }
 
 fn positive(text: &str) -> Result<f32, String> {
@@ -80,7 +97,9 @@ fn positive(text: &str) -> Result<f32, String> {
 
 fn offset(text: &str) -> Result<Offset, String> {
     let known = Offset::NAMED.map(|(name, _)| name);
-    Offset::named(text).ok_or_else(|| format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", ")))
+    Offset::named(text).ok_or_else(|| {
+        format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
+    })
 }
 
 fn leave_out(text: &str) -> Result<LeaveOut, String> {
