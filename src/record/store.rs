@@ -104,7 +104,7 @@ fn finished_bytes(text: &str) -> usize {
 }
 
 fn check_header(path: &Path, header: &csv::StringRecord) -> Result<()> {
-    if header == &COLUMNS[..] {
+    if *header == COLUMNS[..] {
         return Ok(());
     }
     let at = header.iter().zip(COLUMNS).position(|(given, expected)| given != expected);

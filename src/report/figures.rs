@@ -11,11 +11,15 @@ pub fn bias2(summary: &Summary) -> f64 {
     }
 }
 
-/// CPU seconds, set-up included, until relMSE is `error`: set-up + V / (error - b^2), and at least one pass; infinite for never.
+/// CPU seconds, set-up included, until relMSE is `error`: set-up + V / (error - b^2), and at least one pass; infinite for never,
+/// NaN where V is not known.
 pub fn time_to(summary: &Summary, error: f64) -> f64 {
     let room = error - bias2(summary);
     if room <= 0.0 || summary.claim == Claim::Floor {
         return f64::INFINITY;
+    }
+    if summary.variance_seconds.is_nan() {
+        return f64::NAN;
     }
     let one_pass = summary.cpu_s / f64::from(summary.passes.max(1));
     summary.setup_cpu_s + (summary.variance_seconds / room).max(one_pass)
@@ -36,7 +40,7 @@ pub fn balance(summary: &Summary) -> Option<Balance> {
         return None;
     }
     let bias2 = summary.rel_bias2.mean;
-    Some(if bias2 > 0.0 { Balance::At(summary.variance_seconds / bias2) } else { Balance::After(summary.cpu_s) })
+    Some(if bias2 <= 0.0 { Balance::After(summary.cpu_s) } else { Balance::At(summary.variance_seconds / bias2) })
 }
 
 /// Whether the strategy ran to its end, so that its numbers mean something.

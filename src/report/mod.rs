@@ -13,7 +13,7 @@ mod sheet;
 pub mod splice;
 mod table;
 
-pub use page::page;
+pub use page::{page, section};
 pub use plot::plot;
 pub use table::table;
 

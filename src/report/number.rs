@@ -37,7 +37,7 @@ pub(super) fn error(interval: Interval) -> String {
     with_share(interval)
 }
 
-/// A number with its interval as a share of it.
+/// A number with its interval as a share of it, or as a number of its own where it is the larger one.
 pub(super) fn with_share(Interval { mean, half_width }: Interval) -> String {
     let share = 100.0 * half_width / mean.abs();
     if mean.is_nan() {
@@ -45,8 +45,8 @@ pub(super) fn with_share(Interval { mean, half_width }: Interval) -> String {
     } else if !share.is_finite() {
         // One run has no interval.
         format!("{} ±?", short(mean))
-    } else if share > 999.0 {
-        format!("{} ±>999 %", short(mean))
+    } else if share > 99.5 {
+        format!("{} ±{}", short(mean), digits(half_width, 2))
     } else if share >= 9.95 {
         format!("{} ±{share:.0} %", short(mean))
     } else {
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(error(of(0.012_34, 0.000_5)), "0.0123 ±4.1 %");
         assert_eq!(error(of(0.0, 0.0)), "exact");
         assert_eq!(error(of(1.0, f64::INFINITY)), "1.00 ±?");
-        assert_eq!(with_share(of(-1e-6, 1e-3)), "-1.00e-6 ±>999 %");
+        assert_eq!(with_share(of(-1e-6, 1e-3)), "-1.00e-6 ±0.0010");
         assert_eq!(signed_percent(of(-0.012_34, 0.000_5)), "-1.234 ±0.050");
         assert_eq!(signed_percent(of(-1e-9, 0.03)), "+0.0 ±3.0");
     }

@@ -7,7 +7,7 @@ use super::curve::Curve;
 use super::figures;
 use super::mark::Mark;
 use crate::base::error::{Error, Result};
-use crate::record::{Row, SceneRecord, Summary};
+use crate::record::{Claim, Row, SceneRecord, Summary};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -46,8 +46,11 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
     summaries.sort_by(|a, b| figures::order(a, b));
     let entries: Vec<Entry> = summaries
         .into_iter()
-        .enumerate()
-        .map(|(nth, summary)| {
+        .map(|summary| {
+            // By name and not by rank: a strategy keeps its look from scene to scene of a run.
+            let coloured = |s: &Summary| !matches!(s.claim, Claim::Floor | Claim::Ceiling);
+            let before = scene.summaries.iter().filter(|s| coloured(s) && s.strategy < summary.strategy);
+            let nth = before.count();
             let curve = Curve::of(rows, &scene.name, &summary.strategy);
             Entry { summary, curve, mark: Mark::new(&summary.claim, nth) }
         })
@@ -221,8 +224,11 @@ fn legend_lines(entries: &[Entry]) -> Vec<LegendLine> {
         push(27, name, Some(*mark));
         wrapped(parameters).iter().for_each(|line| push(19, line, None));
     }
+    if entries.iter().any(|e| e.mark.hollow && !e.curve.points.is_empty()) {
+        push(34, "dashed and hollow: biased", None);
+    }
     for (at, entry) in entries.iter().filter(|e| e.curve.exact).enumerate() {
-        push(if at == 0 { 34 } else { 19 }, &format!("exact, not drawn: {}", entry.summary.strategy), None);
+        push(if at == 0 { 25 } else { 19 }, &format!("exact, not drawn: {}", entry.summary.strategy), None);
     }
     lines
 }

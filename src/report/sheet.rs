@@ -36,7 +36,7 @@ pub(super) struct Sheet {
 }
 
 /// Longest line of a strategy's name on a terminal; with it the widest table stays within 140 columns.
-const NAME_WIDTH: usize = 26;
+const NAME_WIDTH: usize = 24;
 
 impl Sheet {
     /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its reason.
@@ -48,7 +48,8 @@ impl Sheet {
                 strategy: summary.strategy.clone(),
                 remark: remark(summary),
                 cells: cells.collect(),
-                group: figures::group(summary),
+                // Floor and ceiling stand together.
+                group: figures::group(summary).min(2),
             }
         });
         Self { title, heads: columns.iter().map(|c| c.head).collect(), lines: lines.collect(), below }
@@ -72,13 +73,16 @@ impl Sheet {
             column.set_cell_alignment(CellAlignment::Right);
         }
         let mut text = format!("{}\n\n{}\n", self.title, table.trim_fmt());
+        if !self.below.is_empty() {
+            text.push('\n');
+        }
         self.below.iter().for_each(|note| _ = writeln!(text, " {note}"));
         text
     }
 
-    /// The table in GitHub's Markdown.
-    pub(super) fn markdown(&self) -> String {
-        let mut text = format!("## {}\n\n| strategy |", self.title);
+    /// The table in GitHub's Markdown, under a heading of `level`, 1 to 6.
+    pub(super) fn markdown(&self, level: usize) -> String {
+        let mut text = format!("{} {}\n\n| strategy |", "#".repeat(level), self.title);
         self.heads.iter().for_each(|head| _ = write!(text, " {} |", head.replace('\n', "<br>")));
         text.push_str("\n|:--|");
         self.heads.iter().for_each(|_| text.push_str("--:|"));

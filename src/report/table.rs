@@ -15,7 +15,8 @@ use std::fmt::Write;
 pub fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> String {
     let mut text = format!("{}\n", scene.name);
     facts(run, scene).iter().for_each(|fact| _ = writeln!(text, "  {fact}"));
-    scene.notes.iter().chain(&run.warnings).for_each(|note| _ = writeln!(text, "  ! {note}"));
+    scene.notes.iter().for_each(|note| _ = writeln!(text, "  note: {note}"));
+    warnings(run, scene).iter().for_each(|warning| _ = writeln!(text, "  warning: {warning}"));
     for sheet in sheets(scene, rows) {
         _ = write!(text, "\n{}", sheet.text());
     }
@@ -50,8 +51,17 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
         _ = write!(line, "; its own relMSE {}", short(reference.rel_mse));
     }
     facts.push(line);
-    facts.extend(doubt(scene));
     facts
+}
+
+/// What makes the figures of a scene doubtful.
+pub(super) fn warnings(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
+    let mut warnings = run.warnings.clone();
+    if !run.finished {
+        warnings.push("not finished: some strategies or runs are missing".to_owned());
+    }
+    warnings.extend(doubt(scene));
+    warnings
 }
 
 /// A reference whose own noise is not far below the best row's error.
@@ -61,7 +71,7 @@ fn doubt(scene: &SceneRecord) -> Option<String> {
     // 100: the noise of the reference then adds at most 1 % to any error in the table.
     (100.0 * scene.reference.rel_mse > best).then(|| {
         let times = digits(best / scene.reference.rel_mse, 2);
-        format!("! the best error is only {times} times the reference's own: take errors near it with care")
+        format!("the best error is only {times} times the reference's own: take errors near it with care")
     })
 }
 
@@ -85,15 +95,15 @@ fn against_time(summaries: &[&Summary]) -> Sheet {
         columns.push(Column::new("claim", |s| claim(s).to_owned()));
     }
     columns.extend([
-        Column::new("V\nrelMSE x s", |s| unless_floor(s, short(s.variance_seconds))),
-        Column::new("s to\nrelMSE 0.1", |s| time(s, 0.1)),
+        Column::new("V", |s| unless_floor(s, short(s.variance_seconds))),
+        Column::new("s to\n0.1", |s| time(s, 0.1)),
         Column::new("s to\n0.01", |s| time(s, 0.01)),
         Column::new("relMSE", |s| error(s.rel_mse)),
     ]);
     if summaries.iter().any(|s| is_biased(s)) {
         let only_biased = move |s: &Summary, text: String| if is_biased(s) { text } else { NONE.to_owned() };
         columns.push(Column::new("b²", move |s| only_biased(s, with_share(s.rel_bias2))));
-        columns.push(Column::new("t* s", |s| match figures::balance(s) {
+        columns.push(Column::new("t*, s", |s| match figures::balance(s) {
             Some(Balance::At(t)) => short(t),
             Some(Balance::After(t)) => format!("> {}", short(t)),
             None => NONE.to_owned(),
@@ -105,7 +115,7 @@ fn against_time(summaries: &[&Summary]) -> Sheet {
         Column::new("CPU s", |s| short(s.cpu_s)),
     ]);
     let mut below = vec![
-        "V is variance x CPU seconds of sampling; s to an error is set-up + V / (error - b²), at least one pass."
+        "V is relMSE variance x CPU seconds; seconds to a relMSE of 0.1 are set-up + V / (0.1 - b²), at least one pass."
             .to_owned(),
     ];
     if summaries.iter().any(|s| is_biased(s)) {
