@@ -186,6 +186,25 @@ fn the_page_is_the_recorded_one() {
 }
 
 #[test]
+fn a_section_holds_the_answer_and_where_it_came_from() {
+    let (mut run, rows) = record();
+    run.finished = false;
+    run.scenes[0].reference.rel_mse = 0.002;
+    let section = report::section(&run, &run.scenes[0], &rows, "2026-11-22-village-67eec73/village.svg");
+    for part in [
+        "## village\n",
+        "](2026-11-22-village-67eec73/village.svg)",
+        "| `power` | unbiased | 3.10 |",
+        "Made by `citylights compare scenes/village.toml --repeats 4` (2026-11-22, revision 67eec73,",
+        "- **not finished: some strategies or runs are missing**",
+        "- **the best error is only 29 times the reference's own",
+    ] {
+        assert!(section.contains(part), "{part}\n{section}");
+    }
+    assert!(!section.contains("Work"));
+}
+
+#[test]
 fn columns_that_cannot_vary_are_left_out() {
     let (mut run, rows) = record();
     run.scenes[0].summaries.retain(|s| s.claim == Claim::Unbiased);

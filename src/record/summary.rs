@@ -56,7 +56,8 @@ pub struct Counts {
 
 /// One strategy on one scene at its largest budget.
 ///
-/// Errors are over receiver pixels against the scene's reference. With [`error`](Self::error) or [`skipped`](Self::skipped) set the numbers mean nothing.
+/// Errors are over receiver pixels against the scene's reference. With [`error`](Self::error) or
+/// [`skipped`](Self::skipped) set the numbers mean nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {

@@ -76,7 +76,8 @@ fn draw(svg: &mut String, scene: &SceneRecord, entries: &[Entry]) -> Drawn {
     } else {
         let frame = Frame {
             x: Axis::over(points().map(|p| p.seconds), LEFT, RIGHT),
-            y: Axis::over(points().map(|p| p.error), height - BELOW, TOP),
+            // As tall as it is wide at most, however long the legend.
+            y: Axis::over(points().map(|p| p.error), (height - BELOW).min(TOP + RIGHT - LEFT), TOP),
         };
         grid(&area, &frame)?;
         entries.iter().try_for_each(|entry| band(&area, &frame, entry))?;

@@ -116,7 +116,8 @@ fn remark(summary: &Summary) -> String {
     }
 }
 
-/// `text` in lines of at most [`NAME_WIDTH`] where it can be broken: after `:` and `,` and between words; further lines are indented.
+/// `text` in lines of at most [`NAME_WIDTH`] where it can be broken: after `:` and `,` and between words;
+/// further lines are indented.
 fn folded(text: &str) -> String {
     let mut lines = vec![String::new()];
     for part in text.split_inclusive([':', ',', ' ']) {
