@@ -12,6 +12,7 @@ use crate::record::store::{RowWriter, create_folder, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
 use crate::report;
 use crate::report::table;
+use crate::scene::Scene;
 use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
 use crate::visibility::stage::Stage;
 use clap::Args;
@@ -62,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         // Every recipe is read before anything is measured: a mistake in the last must not cost an hour.
         let scenes =
             arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
-        let names: Vec<&str> = scenes.iter().map(|scene| scene.name()).collect();
+        let names: Vec<&str> = scenes.iter().map(Scene::name).collect();
         if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
             return Err(
                 Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
