@@ -158,8 +158,10 @@ impl Session {
             })?;
         self.record.scenes.push(scene);
         write_run(&self.folder, &self.record)?;
-        if let Some(scene) = self.record.scenes.last() {
-            print(&format!("{}\n", table(&self.record, scene, &rows)))?;
+        // This scene is finished, even where others are still to come.
+        let record = RunRecord { finished: true, ..self.record.clone() };
+        if let Some(scene) = record.scenes.last() {
+            print(&format!("{}\n", table(&record, scene, &rows)))?;
         }
         Ok(())
     }
