@@ -54,7 +54,7 @@ impl Default for Lamps {
             height: 9.0,
             arm: 1.5,
             flux: [5_000.0, 9_000.0],
-            kelvin: [2_000.0, 4_000.0],
+            kelvin: [2_200.0, 4_000.0],
             inner: 30.0,
             outer: 75.0,
             two_rows_from: 18.0,

@@ -22,8 +22,19 @@ const BRIGHTEST: f64 = 1e15;
 
 /// The fields of all kinds; each kind then refuses those of the others.
 const FIELDS: [&str; 13] = [
-    "kind", "position", "target", "inner", "outer", "towards", "corners", "intensity", "flux", "irradiance", "radiance",
-    "colour", "kelvin",
+    "kind",
+    "position",
+    "target",
+    "inner",
+    "outer",
+    "towards",
+    "corners",
+    "intensity",
+    "flux",
+    "irradiance",
+    "radiance",
+    "colour",
+    "kelvin",
 ];
 
 /// A light in the recipe's frame, in f64: its shape, and the places that go into it.
