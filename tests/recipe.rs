@@ -141,7 +141,7 @@ fn a_recipe_with_every_table_is_read() {
     assert_eq!(scene.camera().resolution(), (32, 18));
     let group = |name: &str| {
         let found = scene.groups().iter().find(|group| group.name == name);
-        found.map(|group| group.range.clone()).unwrap_or_else(|| panic!("{name} in {:?}", scene.groups()))
+        found.map_or_else(|| panic!("{name} in {:?}", scene.groups()), |group| group.range.clone())
     };
     let placed = group("placed lights");
     // The generated city comes first and holds the number that was asked for.
@@ -245,7 +245,9 @@ fn enormous_numbers_are_refused_with_the_allowed_range() {
     for lights in ["1_000_000_000_000", "1e12", "99999999999999999999999999", "0", "-5"] {
         wrong(GOOD, "lights = 700", &format!("lights = {lights}"), "city.lights", &["1 and 10000000"]);
     }
-    // A million lights at the least density: ten thousand square kilometres.
+    let many: String = (0..2_000).map(|i| format!("[materials.m{i}]\nalbedo = [0, 0, 0]\n")).collect();
+    refused(&format!("{PLAIN}{many}"), Some(10), "materials", &["2000", "1000"]);
+    // Ten million lights at the least density: ten thousand square kilometres.
     let sparse = "lights = 10_000_000\ndensity = 100\nblock = [40, 60]";
     let text = GOOD.replace("lights = 700", sparse);
     refused(&text, Some(13), "city.density", &["100000"]);
