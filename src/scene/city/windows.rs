@@ -52,7 +52,7 @@ impl Plan for Windows {
         f.number("height", &mut self.height, 0.2..=2.2, "metres")?;
         f.span("radiance", &mut self.radiance, 0.01..=1e5, "cd/m^2")?;
         f.span("kelvin", &mut self.kelvin, 1_700.0..=15_000.0, "kelvin")?;
-        f.number("offices", &mut self.offices, 0.0..=1.0, "of all buildings")
+        f.number("offices", &mut self.offices, 0.0..=1.0, "share of all buildings")
     }
 }
 
