@@ -3,7 +3,17 @@
 #![forbid(unsafe_code)]
 
 pub mod base;
+#[cfg(feature = "cli")]
+pub mod cli;
+#[cfg(feature = "image")]
+pub mod image;
+#[cfg(feature = "measure")]
+pub mod measure;
+#[cfg(feature = "measure")]
+pub mod record;
 pub mod render;
+#[cfg(feature = "plots")]
+pub mod report;
 pub mod scene;
 pub mod shading;
 pub mod strategy;

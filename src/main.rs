@@ -1,1 +1,7 @@
-fn main() {}
+//! The `citylights` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    citylights::cli::run()
+}

@@ -1,8 +1,9 @@
-//! What everything else stands on: random streams, discrete distributions, triangles, statistics, colour, errors.
+//! What everything else stands on: random streams, discrete distributions, triangles, statistics, colour, files, errors.
 
 pub mod colour;
 pub mod discrete;
 pub mod error;
+pub mod file;
 pub mod names;
 pub mod random;
 pub mod statistics;

@@ -8,3 +8,4 @@ pub mod exact;
 pub mod film;
 pub mod kernel;
 pub mod passes;
+pub mod picture;

@@ -47,19 +47,19 @@ impl Plan<'_> {
     /// As [`run`](Self::run), on all threads of the current pool: the same bytes.
     pub fn run_parallel(&self, passes: u32, film: &mut Film) {
         let kernel = kernel(self.stage.needs(), false);
-        let block = film.passes..film.passes + passes;
+        let block = film.next..film.next + passes;
         self.receivers.par_chunks(TILE).zip(film.sums.par_chunks_mut(TILE)).for_each_init(
             || Tiles::new(self.sampler),
             |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &block, sums, &mut Counts::default()),
         );
-        film.passes += passes;
+        film.next += passes;
     }
 
     fn one_thread(&self, kernel: Kernel, passes: u32, film: &mut Film, counts: &mut Counts) {
-        let block = film.passes..film.passes + passes;
+        let block = film.next..film.next + passes;
         let mut tiles = Tiles::new(self.sampler);
         tiles.run(self, kernel, self.receivers, &block, &mut film.sums, counts);
-        film.passes += passes;
+        film.next += passes;
     }
 }
 

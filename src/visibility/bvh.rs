@@ -13,7 +13,7 @@ use std::time::Duration;
 ///
 /// Boxes are padded by a few units in the last place, since the slab test has no error bound of its own. The builder
 /// merges one pair of equal boxes a pass: thousands of coincident lights or triangles would take quadratic time and
-/// build a list instead of a tree. So boxes that occur more than [`ALIKE`] times are grown by small random amounts.
+/// build a list instead of a tree. So boxes that occur more than [`ALIKE`] times are grown a little, each in its own directions.
 pub(super) fn build(corners: impl Iterator<Item = (Vec3, Vec3)>, leaf: u32) -> Bvh2 {
     let mut boxes: Vec<Aabb> = corners.map(|(low, high)| pad(low, high)).collect();
     let alike = separate(&mut boxes);
@@ -52,9 +52,11 @@ fn separate(boxes: &mut [Aabb]) -> usize {
         for &(_, i) in alike {
             let b = &mut boxes[i as usize];
             let scale = (b.max - b.min).max_element() * 1e-3 + b.min.abs().max(b.max.abs()).max_element() * 1e-5 + 1e-6;
-            let mut grow = || Vec3A::new(stream.uniform(), stream.uniform(), stream.uniform()) * scale;
-            b.min -= grow();
-            b.max += grow();
+            // All grow by the same, shared out between the low and the high side: the union of two boxes then exceeds
+            // each by how far apart their shares are, and the builder sees points spread in space.
+            let share = Vec3A::new(stream.uniform(), stream.uniform(), stream.uniform());
+            b.min -= share * scale;
+            b.max += (1.0 - share) * scale;
         }
     }
     grown
@@ -69,7 +71,7 @@ mod tests {
     fn coincident_boxes_build_a_shallow_tree_quickly() {
         let start = Instant::now();
         let bvh = build((0..50_000).map(|_| (Vec3::splat(1.0), Vec3::splat(2.0))), 1);
-        assert!(start.elapsed().as_secs_f32() < 20.0, "{:?}", start.elapsed());
+        assert!(start.elapsed().as_secs_f32() < 5.0, "{:?}", start.elapsed());
         assert!(bvh.max_depth <= 96, "depth {}: each query would allocate its stack", bvh.max_depth);
     }
 }

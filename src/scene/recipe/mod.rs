@@ -1,1 +1,229 @@
 //! Scenes from TOML files.
+//!
+//! A recipe is a camera and what it looks at: a generated `[city]`, surfaces and lights placed by hand, or both.
+//! Lengths are metres, +z is up, angles are degrees, light is photometric (lm, cd, cd/m^2, lx), colours are linear
+//! Rec. 709. Every mistake is an [`Error::Input`] with line, field and what would be right; nothing that a file can
+//! say panics or asks for unbounded memory.
+//!
+//! | table | fields (defaults in parentheses) |
+//! |---|---|
+//! | top level | `name`, `version = 1`, `seed` (1), `ev100` (none: exposure 1), `origin` (`[0, 0, 0]`, f64) |
+//! | `[camera]` | `position`, `target`, `fov` (60, vertical), `resolution` (`[240, 135]`) |
+//! | `[city]` | [`City`](crate::scene::city::City), with a table per part |
+//! | `[ground]` | `size` (one number or `[x, y]`), `centre` (`[0, 0]`), `height` (0), `material` |
+//! | `[materials.NAME]` | `albedo`, `street` (false); the names of a city's materials are known already |
+//! | `[[box]]` | `low`, `high`, `material` |
+//! | `[[quad]]`, `[[triangle]]` | `corners`, `material` |
+//! | `[[light]]` | `kind`, and [by kind](lights) |
+//! | `[[bulbs]]` | [`Bulbs`](crate::scene::city::bulbs::Bulbs), `size`, `centre` (`[0, 0]`), `ground` (0) |
+//!
+//! Everything is relative to `origin`, the recipe's frame: moving it changes [`Scene::origin`] and no other byte.
+
+mod lights;
+mod surfaces;
+mod table;
+
+use crate::base::error::{Error, Result};
+use crate::scene::camera::Camera;
+use crate::scene::city::bulbs::Bulbs;
+use crate::scene::city::{self, City, Grown, Solid};
+use crate::scene::{LightGroup, Parts, Scene};
+use glam::{DVec2, DVec3, Vec3};
+use std::io::Read;
+use std::path::Path;
+use surfaces::Surfaces;
+use table::{Source, Table};
+
+/// What a caller sets in place of the recipe's own words.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The seed.
+    pub seed: Option<u64>,
+    /// Pixels across and down.
+    pub resolution: Option<(u32, u32)>,
+    /// Exposure value at ISO 100.
+    pub ev100: Option<f32>,
+}
+
+/// Larger files are refused: 16 MiB hold about 200,000 lights written by hand.
+const LARGEST_FILE: u64 = 16 << 20;
+/// Most bulbs in all of a recipe's strings.
+const MOST_BULBS: f64 = 1e7;
+/// Coordinates lie within this distance of the frame, in m.
+const FARTHEST: f64 = 1e7;
+
+const TOP: [&str; 14] = [
+    "name",
+    "version",
+    "seed",
+    "ev100",
+    "origin",
+    "camera",
+    "city",
+    "ground",
+    "materials",
+    "box",
+    "quad",
+    "triangle",
+    "light",
+    "bulbs",
+];
+
+/// The scene of a recipe file.
+pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(Error::io("read", path))?;
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(Error::io("read", path))?;
+    let refuse = |line, message: String| Error::Input { file: path.to_owned(), line, field: String::new(), message };
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(refuse(None, format!("the file is larger than {LARGEST_FILE} bytes, the most for a recipe")));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let upto = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..upto].iter().filter(|&&b| b == b'\n').count();
+        refuse(Some(line), "is not UTF-8 text; a recipe is a TOML file".into())
+    })?;
+    parse(&text, path, overrides)
+}
+
+/// The scene of a recipe's text; `file` is the name that errors give.
+pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
+    let source = Source::new(file, text);
+    if text.trim().is_empty() {
+        return Err(source.error(None, "", "the file is empty; a recipe starts with `name`, `seed` and `version = 1`"));
+    }
+    let document = source.document()?;
+    let top = Table::top(&source, &document);
+    top.only(&TOP)?;
+    if top.needed_count("version", 0..=u64::MAX >> 1)? != 1 {
+        return Err(top.wrong("version", "this program reads version 1 of recipes: `version = 1` is asked for"));
+    }
+    let name = top.needed_text("name", "the scene's name")?;
+    let seed = top.count("seed", 0..=u64::MAX >> 1)?.unwrap_or(1);
+    let seed = overrides.seed.unwrap_or(seed);
+    let ev100 = top.number("ev100", -30.0..=40.0, "EV at ISO 100")?.map(|ev| ev as f32);
+    let frame = top.vector("origin", 1e12)?.unwrap_or(DVec3::ZERO);
+
+    let grown = top.table("city")?.map(|table| grow(&table, seed)).transpose()?;
+    let by_hand = Surfaces::read(&top, grown.as_ref())?;
+    let lights = lights::read(&top)?;
+    let strings = read_bulbs(&top)?;
+
+    // A city lies about the frame's origin. What is placed by hand may lie anywhere: f32 has 0.1 mm at 1 km.
+    let shift = if grown.is_some() { DVec3::ZERO } else { (by_hand.centre() / 1000.0).round() * 1000.0 };
+    let camera_table = top.needed_table("camera")?;
+    camera_table.only(&["position", "target", "fov", "resolution"])?;
+    let eye = camera_table.needed_vector("position", FARTHEST)?;
+    by_hand.keep_out(&camera_table, eye)?;
+    let camera = camera(&camera_table, eye - shift, shift, overrides.resolution)?;
+
+    let grown = grown.unwrap_or_default();
+    if let Some(solid) = grown.solids.iter().find(|solid| solid.contains(eye.as_vec3())) {
+        return Err(inside(&camera_table, "a building of the city", *solid));
+    }
+    let Grown { lights: mut all, mut groups, surfaces: mut triangles, notes, .. } = grown;
+    let (placed, materials) = by_hand.finish(shift);
+    triangles.extend(placed);
+    let mut add = |name: &str, more: Vec<_>| {
+        let start = all.len() as u32;
+        all.extend(more);
+        groups.push(LightGroup { name: name.into(), range: start..all.len() as u32 });
+    };
+    add("placed lights", lights.into_iter().map(|light| light.at(shift)).collect());
+    let low = |string: &Strings| string.centre - 0.5 * string.size - shift.truncate();
+    add(
+        "strings of bulbs",
+        strings.iter().flat_map(|s| s.plan.over(low(s), low(s) + s.size, s.ground - shift.z)).collect(),
+    );
+    Scene::new(Parts {
+        name,
+        seed,
+        origin: frame + shift,
+        lights: all,
+        groups,
+        surfaces: triangles,
+        materials,
+        camera,
+        ev100: overrides.ev100.or(ev100),
+        notes,
+    })
+    .map_err(|error| match error {
+        Error::Invalid(message) => source.error(None, "", message),
+        other => other,
+    })
+}
+
+fn grow(table: &Table, seed: u64) -> Result<Grown> {
+    let mut plan = City::default();
+    table.fill(&mut plan)?;
+    city::generate(&plan, seed).map_err(|error| match error {
+        // The plan was read from this file: say where.
+        Error::Parameter { owner, name, value, expected } => {
+            table.at_path(&format!("{owner}.{name}"), format!("{value} is given or assumed; {expected}"))
+        }
+        other => other,
+    })
+}
+
+fn camera(table: &Table, eye: DVec3, shift: DVec3, resolution: Option<(u32, u32)>) -> Result<Camera> {
+    let target = table.needed_vector("target", FARTHEST)? - shift;
+    let fov = table.number("fov", 1.0..=170.0, "degrees")?.unwrap_or(60.0);
+    let given = table.pair("resolution", 1.0..=16_384.0, "pixels")?.unwrap_or(DVec2::new(240.0, 135.0));
+    if given.fract() != DVec2::ZERO {
+        return Err(table.wrong("resolution", format!("{given} is given; whole numbers of pixels are asked for")));
+    }
+    let (width, height) = resolution.unwrap_or((given.x as u32, given.y as u32));
+    // A target nearer than this gives a direction of too few digits.
+    if (target - eye).length() < 0.01 {
+        return Err(table.wrong("target", "the camera needs a target at least 0.01 metres from its position"));
+    }
+    Camera::new(eye.as_vec3(), target.as_vec3(), fov as f32, width, height).map_err(|error| match error {
+        Error::Invalid(message) => table.wrong("resolution", message),
+        other => other,
+    })
+}
+
+/// What to say about a camera in a solid.
+fn inside(camera: &Table, what: &str, solid: Solid) -> Error {
+    let Solid { low, high } = solid;
+    camera.wrong(
+        "position",
+        format!("the camera stands inside {what}, from {low} to {high}: the image would be black; move it out"),
+    )
+}
+
+/// Strings of bulbs over a rectangle.
+struct Strings {
+    plan: Bulbs,
+    centre: DVec2,
+    size: DVec2,
+    ground: f64,
+}
+
+fn read_bulbs(top: &Table) -> Result<Vec<Strings>> {
+    let mut all = 0.0;
+    let mut out = Vec::new();
+    for table in top.tables("bulbs")? {
+        let mut plan = Bulbs::default();
+        table.fill_with(&mut plan, &["size", "centre", "ground"])?;
+        let far = -FARTHEST..=FARTHEST;
+        let strings = Strings {
+            centre: table.pair("centre", far.clone(), "metres")?.unwrap_or_default(),
+            size: table.needed_pair("size", 1.0..=1e5, "metres")?,
+            ground: table.number("ground", far, "metres")?.unwrap_or(0.0),
+            plan,
+        };
+        all += strings.plan.most(strings.size.x, strings.size.y);
+        if all > MOST_BULBS {
+            let text = format!("there would be about {all:.0} bulbs; at most {MOST_BULBS} are allowed in all strings");
+            return Err(table.wrong("size", text));
+        }
+        out.push(strings);
+    }
+    Ok(out)
+}
+
+/// A position in f32, relative to `shift`.
+fn near(position: DVec3, shift: DVec3) -> Vec3 {
+    (position - shift).as_vec3()
+}

@@ -1,0 +1,90 @@
+//! `citylights list`: which strategies and scenes are there?
+
+use super::{Outcome, print};
+use crate::base::error::Error;
+use crate::strategy::Claim;
+use crate::strategy::registry::{STRATEGIES, parse};
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::path::Path;
+
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// What to list
+    #[arg(value_enum)]
+    what: What,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum What {
+    Strategies,
+    Scenes,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+    let list = match arguments.what {
+        What::Strategies => strategies()?,
+        What::Scenes => scenes(Path::new("scenes"))?,
+    };
+    if arguments.json {
+        print(&format!(
+            "{}\n",
+            serde_json::to_string_pretty(&list.iter().map(|item| &item.json).collect::<Vec<_>>())?
+        ))?;
+    } else {
+        list.iter().try_for_each(|item| print(&item.text))?;
+    }
+    Ok(Outcome::Done)
+}
+
+struct Item {
+    text: String,
+    json: Value,
+}
+
+fn strategies() -> Result<Vec<Item>, Error> {
+    STRATEGIES.iter().map(|entry| strategy(entry.info().name)).collect()
+}
+
+fn strategy(name: &str) -> Result<Item, Error> {
+    let configured = parse(name)?;
+    let info = configured.info();
+    let claim = match info.claim {
+        Claim::Unbiased => "unbiased".to_owned(),
+        Claim::Biased(why) => format!("biased: {why}"),
+    };
+    let mut text = format!("{name}\n    {}\n    {claim}\n    source: {}\n", info.summary, info.source);
+    for p in configured.parameters() {
+        text.push_str(&format!("    {}={} ({}): {}\n", p.name, p.default, p.allowed, p.meaning));
+    }
+    let parameters: Vec<Value> = configured
+        .parameters()
+        .iter()
+        .map(|p| json!({ "name": p.name, "default": p.default, "allowed": p.allowed, "meaning": p.meaning }))
+        .collect();
+    let json = json!({ "name": name, "summary": info.summary, "source": info.source, "claim": claim, "parameters": parameters });
+    Ok(Item { text, json })
+}
+
+/// The recipes of a folder; what a scene is for stands in the comment at its head.
+fn scenes(folder: &Path) -> Result<Vec<Item>, Error> {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .map_err(Error::io("read", folder))?
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    files.sort();
+    let item = |path: &std::path::PathBuf| {
+        let text = std::fs::read_to_string(path).map_err(Error::io("read", path))?;
+        let head: Vec<&str> = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect();
+        let purpose = head.join(" ");
+        Ok(Item {
+            text: format!("{}\n    {purpose}\n", path.display()),
+            json: json!({ "file": path.display().to_string(), "purpose": purpose }),
+        })
+    };
+    files.iter().map(item).collect()
+}

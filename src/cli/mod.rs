@@ -1,0 +1,79 @@
+//! The command line: one file a verb.
+//!
+//! Data on stdout, progress on stderr. Exit code 0: done; 1: a check failed; 2: wrong usage or bad input; 130:
+//! interrupted.
+
+mod compare;
+mod inspect;
+mod list;
+mod progress;
+mod reference;
+mod render;
+mod report;
+mod scene;
+
+use crate::base::error::Error;
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Many-light strategies on night cities, measured: error against run time.
+#[derive(Parser)]
+#[command(name = "citylights", version, propagate_version = true, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Error against run time, all strategies in one table: the main job
+    Compare(compare::Arguments),
+    /// Render a scene with one strategy
+    Render(render::Arguments),
+    /// The exact image and its standard error, cached
+    Reference(reference::Arguments),
+    /// What is in a scene, and what can be left out of it
+    Inspect(inspect::Arguments),
+    /// Name the strategies or the scenes
+    List(list::Arguments),
+    /// Make tables and plots again from the raw rows of a result folder
+    Report(report::Arguments),
+}
+
+/// What a verb came to.
+enum Outcome {
+    Done,
+    /// A check that the user asked for has failed; the text was printed.
+    CheckFailed,
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match &cli.verb {
+        Verb::Compare(arguments) => compare::run(arguments),
+        Verb::Render(arguments) => render::run(arguments),
+        Verb::Reference(arguments) => reference::run(arguments),
+        Verb::Inspect(arguments) => inspect::run(arguments),
+        Verb::List(arguments) => list::run(arguments),
+        Verb::Report(arguments) => report::run(arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::CheckFailed) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("citylights: {error:#}");
+            let interrupted = matches!(error.downcast_ref::<Error>(), Some(Error::Interrupted));
+            ExitCode::from(if interrupted { 130 } else { 2 })
+        }
+    }
+}
+
+/// Prints to stdout; a reader that has gone away (`| head`) is no error.
+fn print(text: &str) -> anyhow::Result<()> {
+    use std::io::Write;
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e.into()),
+        _ => Ok(()),
+    }
+}

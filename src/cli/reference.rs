@@ -1,0 +1,64 @@
+//! `citylights reference`: the exact image.
+
+use super::progress::Progress;
+use super::render::save;
+use super::scene::{SceneOptions, check_output, pool, threads};
+use super::{Outcome, print};
+use crate::measure::reference::Reference;
+use crate::measure::target::{MOST_PAIRS, Target};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The recipe
+    scene: PathBuf,
+    /// The picture: .exr linear, or .png through exposure and sRGB
+    #[arg(long, short)]
+    output: PathBuf,
+    /// Refine triangle lights until the image's own relMSE is at most this; other lights are exact
+    #[arg(long, value_name = "RELMSE", default_value = "1e-5", value_parser = noise)]
+    noise: f64,
+    /// Folder of finished tiles; an interrupted run goes on from there
+    #[arg(long, value_name = "DIR", default_value = super::compare::CACHE)]
+    cache: PathBuf,
+    /// Threads; all cores by default. The picture does not depend on it
+    #[arg(long, value_parser = threads)]
+    threads: Option<u32>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+    check_output(&arguments.output)?;
+    let progress = Progress::new()?;
+    pool(arguments.threads)?.install(|| {
+        let stage = arguments.scene_options.stage(&arguments.scene)?;
+        progress.scene(stage.scene().name());
+        let pairs = stage.receivers().len() as u64 * stage.scene().lights().len() as u64;
+        if pairs > MOST_PAIRS {
+            eprintln!("{}: {pairs} pairs of pixel and light; this takes a while", stage.scene().name());
+        }
+        let reference = Reference::compute(&Target::whole(&stage), arguments.noise, &arguments.cache, &progress)?;
+        save(&stage, reference.truth.mean(), &arguments.output)?;
+        let kind = if reference.exact_sum { "exact sum" } else { "stratified" };
+        let cached = if reference.cached { ", from the cache" } else { "" };
+        print(&format!(
+            "{}: {kind}, own relMSE {:.2e} (epsilon {}), mean luminance to {:.1e}, {} shadow rays, {:.1} CPU s{cached}\n",
+            stage.scene().name(),
+            reference.truth.own_rel_mse(),
+            reference.truth.epsilon(),
+            reference.truth.own_energy_error(),
+            reference.rays,
+            reference.cpu_s,
+        ))?;
+        Ok(Outcome::Done)
+    })
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| (1e-12..=1.0).contains(x))
+        .ok_or_else(|| "a number from 1e-12 to 1 is right".into())
+}

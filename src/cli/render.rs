@@ -1,0 +1,105 @@
+//! `citylights render`: one picture by one strategy.
+
+use super::scene::{SceneOptions, check_output, pool, threads};
+use super::{Outcome, print};
+use crate::base::error::{Error, Result};
+use crate::base::random::RunKey;
+use crate::image::{self, Picture};
+use crate::render::film::Film;
+use crate::render::passes::Plan;
+use crate::render::picture::picture;
+use crate::strategy::BuildContext;
+use crate::strategy::registry;
+use crate::visibility::stage::Stage;
+use crate::visibility::view::Seen;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The recipe
+    scene: PathBuf,
+    /// The strategy, with parameters if any: influence-pick:picks=4
+    #[arg(long, short, default_value = "influence-tail")]
+    strategy: String,
+    /// Passes: samples a pixel
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    spp: u32,
+    /// The picture: .png through exposure and sRGB, .exr linear
+    #[arg(long, short, required_unless_present = "pixel")]
+    output: Option<PathBuf>,
+    /// Print one pixel, from the left and the top, pass by pass, instead of a picture
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pixel: Option<(u32, u32)>,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads; all cores by default. The picture does not depend on it
+    #[arg(long, value_parser = threads)]
+    threads: Option<u32>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+    let strategy = registry::parse(&arguments.strategy)?;
+    if let Some(output) = &arguments.output {
+        check_output(output)?;
+    }
+    pool(arguments.threads)?.install(|| {
+        let stage = arguments.scene_options.stage(&arguments.scene)?;
+        let sampler = strategy.build(BuildContext { stage: &stage, seed: arguments.seed })?;
+        let key = RunKey { seed: arguments.seed, run: 0 };
+        let plan = Plan { stage: &stage, receivers: stage.receivers(), sampler: sampler.as_ref(), key };
+        if let Some((x, y)) = arguments.pixel {
+            return one_pixel(&plan, x, y, arguments.spp);
+        }
+        let mut film = Film::new(stage.receivers().len());
+        plan.run_parallel(arguments.spp, &mut film);
+        if let Some(output) = &arguments.output {
+            save(&stage, &film.image(), output)?;
+        }
+        Ok(Outcome::Done)
+    })
+}
+
+/// Writes what the camera sees.
+pub(super) fn save(stage: &Stage, receivers: &[glam::Vec3], output: &std::path::Path) -> Result<()> {
+    let (width, height) = stage.view().resolution();
+    let picture = Picture { width, height, pixels: picture(stage, receivers) };
+    let bad = image::write(output, &picture, stage.scene().exposure())?;
+    if bad > 0 {
+        eprintln!("{bad} pixels are not finite; they are magenta in the picture");
+    }
+    Ok(())
+}
+
+/// Replays the passes of one pixel.
+fn one_pixel(plan: &Plan<'_>, x: u32, y: u32, passes: u32) -> anyhow::Result<Outcome> {
+    let (width, height) = plan.stage.view().resolution();
+    if x >= width || y >= height {
+        return Err(Error::Invalid(format!("pixel {x},{y} lies outside the {width} x {height} film")).into());
+    }
+    let seen = plan.stage.view().pixels()[(y * width + x) as usize];
+    let Seen::Receiver(index) = seen else {
+        print(&format!("pixel {x},{y} sees {}\n", if seen == Seen::Sky { "the sky" } else { "an emitter" }))?;
+        return Ok(Outcome::Done);
+    };
+    let at = plan.receivers[index as usize];
+    let point = [at];
+    let plan = Plan { receivers: &point, ..*plan };
+    print(&format!("pixel {x},{y}: position {} m, normal {}, albedo {}\n", at.position, at.normal, at.albedo))?;
+    let mut film = Film::new(1);
+    for pass in 0..passes {
+        let mut single = Film::starting_at(1, pass);
+        plan.run(1, &mut single);
+        plan.run(1, &mut film);
+        print(&format!("pass {pass}: {} cd/m^2, mean {}\n", single.image()[0], film.image()[0]))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn pixel(text: &str) -> std::result::Result<(u32, u32), String> {
+    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    parsed.ok_or_else(|| "two whole numbers are right, as 10,20".into())
+}

@@ -1,0 +1,111 @@
+//! Options that say which scene, and how it is prepared.
+
+use crate::base::error::Error;
+use crate::base::names;
+use crate::image::Format;
+use crate::scene::Scene;
+use crate::scene::recipe::{self, Overrides};
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use clap::Args;
+use std::path::Path;
+
+/// Options of every verb that takes a scene.
+#[derive(Args)]
+pub(super) struct SceneOptions {
+    /// Seed of the city, instead of the recipe's
+    #[arg(long, value_name = "N")]
+    scene_seed: Option<u64>,
+    /// Pixels across and down, instead of the recipe's
+    #[arg(long, value_name = "WxH", value_parser = resolution)]
+    resolution: Option<(u32, u32)>,
+    /// Exposure value at ISO 100, instead of the recipe's
+    #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]
+    ev100: Option<f32>,
+    /// Factor from radiance to displayed value, instead of an exposure value
+    #[arg(long, value_name = "X", value_parser = positive)]
+    exposure: Option<f32>,
+    /// How shadow rays keep off their own surfaces
+    #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
+    offset: Offset,
+    /// Leave out what the scene provably does not need
+    #[arg(long, value_name = "on|off", default_value = "on", value_parser = leave_out)]
+    leave_out: LeaveOut,
+}
+
+impl SceneOptions {
+    /// Loads a scene.
+    pub(super) fn load(&self, file: &Path) -> Result<Scene, Error> {
+        // exposure = 1 / (1.2 * 2^EV100)
+        let ev100 = self.exposure.map(|exposure| -(1.2 * exposure).log2()).or(self.ev100);
+        let scene = recipe::load(file, &Overrides { seed: self.scene_seed, resolution: self.resolution, ev100 })?;
+        for note in scene.notes() {
+            eprintln!("{}: {note}", scene.name());
+        }
+        Ok(scene)
+    }
+
+    /// Loads a scene and makes it ready.
+    pub(super) fn stage(&self, file: &Path) -> Result<Stage, Error> {
+        Ok(self.prepare(self.load(file)?))
+    }
+
+    /// Makes a loaded scene ready.
+    pub(super) fn prepare(&self, scene: Scene) -> Stage {
+        Stage::new(scene, self.leave_out, self.offset)
+    }
+}
+
+/// Refuses a picture that could not be written, before the work instead of after it.
+pub(super) fn check_output(file: &Path) -> Result<(), Error> {
+    Format::of(file)?;
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if folder.is_dir() {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!("cannot write {}: there is no folder {}", file.display(), folder.display())))
+    }
+}
+
+/// A pool of `threads` threads; all cores where none is given.
+pub(super) fn pool(threads: Option<u32>) -> anyhow::Result<rayon::ThreadPool> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0) as usize).build()?)
+}
+
+/// Parses a number of threads.
+pub(super) fn threads(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| (1..=1024).contains(n)).ok_or_else(|| "a whole number from 1 to 1024 is right".into())
+}
+
+fn resolution(text: &str) -> Result<(u32, u32), String> {
+    let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    parsed
+        .filter(|&(w, h): &(u32, u32)| w > 0 && h > 0)
+        .ok_or_else(|| "two whole numbers of 1 or more are right, as 240x135".into())
+}
+
+fn finite(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f32| x.is_finite() && x.abs() <= 60.0)
+        .ok_or_else(|| "a number from -60 to 60 is right".into())
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|x: &f32| x.is_normal() && *x > 0.0).ok_or_else(|| "a number above 0 is right".into())
+}
+
+fn offset(text: &str) -> Result<Offset, String> {
+    let known = Offset::NAMED.map(|(name, _)| name);
+    Offset::named(text).ok_or_else(|| {
+        format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
+    })
+}
+
+fn leave_out(text: &str) -> Result<LeaveOut, String> {
+    match text {
+        "on" => Ok(LeaveOut::Yes),
+        "off" => Ok(LeaveOut::No),
+        _ => Err("on or off is right".into()),
+    }
+}

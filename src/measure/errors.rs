@@ -1,0 +1,166 @@
+//! How far is an image from the truth?
+
+use crate::base::colour::luminance;
+use glam::{DVec3, Vec3};
+
+/// The exact radiance of the measured receivers: two independent halves, equal where the sum is free of noise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Truth {
+    halves: [Vec<Vec3>; 2],
+    mean: Vec<Vec3>,
+    epsilon: Vec3,
+    /// Receivers by luminance of the truth, darkest first.
+    by_luminance: Vec<u32>,
+}
+
+/// The errors of one image, over receivers and channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Mean squared error, in (cd/m^2)^2.
+    pub mse: f64,
+    /// Mean of squared error over (squared truth + epsilon).
+    pub rel_mse: f64,
+    /// The same without the worst 0.1 % of the receivers.
+    pub rel_mse_trimmed: f64,
+    /// Share of `rel_mse` that those hold.
+    pub trimmed_share: f64,
+    /// Mean luminance over the truth's; 1 where both are 0.
+    pub energy_ratio: f64,
+    /// relMSE by tenths of the truth's luminance, darkest first.
+    pub deciles: [f64; 10],
+}
+
+impl Truth {
+    /// From two independent halves.
+    ///
+    /// Epsilon, per channel, is 0.01 times the square of the mean over the receivers.
+    pub fn new(halves: [Vec<Vec3>; 2]) -> Self {
+        let mean: Vec<Vec3> =
+            halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
+        let average = mean.iter().fold(DVec3::ZERO, |sum, x| sum + x.as_dvec3()) / mean.len().max(1) as f64;
+        let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
+        by_luminance.sort_by(|&a, &b| luminance(mean[a as usize]).total_cmp(&luminance(mean[b as usize])));
+        Self { epsilon: (average * average * 0.01).as_vec3(), halves, mean, by_luminance }
+    }
+
+    /// The best estimate, in cd/m^2.
+    pub fn mean(&self) -> &[Vec3] {
+        &self.mean
+    }
+
+    /// The epsilon of relMSE, per channel.
+    pub fn epsilon(&self) -> Vec3 {
+        self.epsilon
+    }
+
+    /// relMSE of the mean of the halves about what it estimates; 0 for an exact sum.
+    pub fn own_rel_mse(&self) -> f64 {
+        // The variance of the mean of two is a quarter of the square of their difference, on average.
+        self.mean_over(|i| {
+            let difference = (self.halves[0][i] - self.halves[1][i]).as_dvec3();
+            difference * difference * 0.25 * self.weight(i)
+        })
+    }
+
+    /// Standard error of the mean luminance as a share of it; 0 for an exact sum.
+    pub fn own_energy_error(&self) -> f64 {
+        let total = |image: &[Vec3]| image.iter().map(|&x| f64::from(luminance(x))).sum::<f64>();
+        let (a, b) = (total(&self.halves[0]), total(&self.halves[1]));
+        if a + b > 0.0 { ((a - b) / (a + b)).abs() } else { 0.0 }
+    }
+
+    /// `1 / (truth^2 + epsilon)` per channel; 0 where that would be a division of nothing by nothing.
+    pub fn weight(&self, i: usize) -> DVec3 {
+        let r = self.mean[i].as_dvec3();
+        let denominator = r * r + self.epsilon.as_dvec3();
+        DVec3::select(denominator.cmpgt(DVec3::ZERO), denominator.recip(), DVec3::ZERO)
+    }
+
+    /// Mean over receivers and channels.
+    pub fn mean_over(&self, value: impl Fn(usize) -> DVec3) -> f64 {
+        let n = self.mean.len();
+        if n == 0 { 0.0 } else { (0..n).map(|i| value(i).element_sum()).sum::<f64>() / (3 * n) as f64 }
+    }
+
+    /// `(x - first half)(x - second half)`: its mean over runs is the squared error without the truth's own noise.
+    pub fn product(&self, i: usize, x: DVec3) -> DVec3 {
+        (x - self.halves[0][i].as_dvec3()) * (x - self.halves[1][i].as_dvec3())
+    }
+
+    /// All errors of an image.
+    pub fn errors(&self, image: &[Vec3]) -> Errors {
+        let n = self.mean.len();
+        if n == 0 {
+            return Errors { energy_ratio: 1.0, ..Errors::default() };
+        }
+        let squares: Vec<DVec3> = (0..n).map(|i| self.product(i, image[i].as_dvec3())).collect();
+        let relative: Vec<f64> = (0..n).map(|i| (squares[i] * self.weight(i)).element_sum() / 3.0).collect();
+        let total: f64 = relative.iter().sum();
+        let mut sorted = relative.clone();
+        sorted.sort_by(f64::total_cmp);
+        let worst = n.div_ceil(1000).min(n);
+        let kept: f64 = sorted[..n - worst].iter().sum();
+        let energy = |image: &[Vec3]| image.iter().map(|&x| f64::from(luminance(x))).sum::<f64>();
+        let (energy, expected) = (energy(image), energy(&self.mean));
+        Errors {
+            mse: squares.iter().map(|s| s.element_sum()).sum::<f64>() / (3 * n) as f64,
+            rel_mse: total / n as f64,
+            rel_mse_trimmed: if n > worst { kept / (n - worst) as f64 } else { 0.0 },
+            trimmed_share: if total > 0.0 { ((total - kept) / total).clamp(0.0, 1.0) } else { 0.0 },
+            energy_ratio: if expected > 0.0 { energy / expected } else { 1.0 },
+            deciles: std::array::from_fn(|d| {
+                let part = &self.by_luminance[d * n / 10..(d + 1) * n / 10];
+                part.iter().map(|&i| relative[i as usize]).sum::<f64>() / part.len().max(1) as f64
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn truth(values: &[f32]) -> Truth {
+        let image: Vec<Vec3> = values.iter().map(|&v| Vec3::splat(v)).collect();
+        Truth::new([image.clone(), image])
+    }
+
+    #[test]
+    fn the_truth_itself_has_no_error() {
+        let truth = truth(&[0.0, 1.0, 2.0, 5.0]);
+        let errors = truth.errors(truth.mean());
+        assert_eq!((errors.mse, errors.rel_mse, errors.energy_ratio), (0.0, 0.0, 1.0));
+        assert_eq!(truth.own_rel_mse(), 0.0);
+    }
+
+    #[test]
+    fn errors_of_a_known_image() {
+        // Mean 2: epsilon is 0.01 * 4 = 0.04.
+        let truth = truth(&[1.0, 3.0]);
+        let errors = truth.errors(&[Vec3::splat(2.0), Vec3::splat(3.0)]);
+        assert!((errors.mse - 0.5).abs() < 1e-7);
+        assert!((errors.rel_mse - 0.5 / 1.04).abs() < 1e-7, "{}", errors.rel_mse);
+        assert!((errors.energy_ratio - 1.25).abs() < 1e-7);
+    }
+
+    #[test]
+    fn noise_of_the_truth_is_seen_and_taken_out() {
+        let n = 20_000;
+        let noise = |seed: u64| {
+            let mut rng = crate::base::random::Stream::keyed(&[seed]);
+            (0..n).map(|_| Vec3::splat(1.0 + 0.1 * (rng.uniform() - 0.5))).collect::<Vec<_>>()
+        };
+        let truth = Truth::new([noise(1), noise(2)]);
+        // Uniform noise of width 0.1 has variance 0.1^2 / 12; the mean of two has half of it.
+        assert!((truth.own_rel_mse() * 1.01 * 2.0 / (0.01 / 12.0) - 1.0).abs() < 0.05, "{}", truth.own_rel_mse());
+        let errors = truth.errors(&vec![Vec3::splat(1.0); n]);
+        assert!(errors.mse.abs() < 0.01 / 12.0 * 0.05, "{}", errors.mse);
+    }
+
+    #[test]
+    fn a_black_scene_divides_nothing_by_nothing() {
+        let truth = truth(&[0.0, 0.0]);
+        let errors = truth.errors(&[Vec3::ZERO; 2]);
+        assert_eq!((errors.rel_mse, errors.energy_ratio), (0.0, 1.0));
+    }
+}

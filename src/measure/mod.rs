@@ -1,0 +1,17 @@
+//! How far from the truth is each strategy, after how much time?
+//!
+//! One [`Target`](target::Target) a scene holds the receivers and the exact image. A [`Plan`](plan::Plan) says how far
+//! each strategy can go within its budget. [`compare`] runs all of it, interleaved, and hands out rows as they come.
+
+pub mod clock;
+pub mod compare;
+pub mod environment;
+pub mod errors;
+pub mod films;
+pub mod inspect;
+pub mod observer;
+pub mod plan;
+pub mod reference;
+pub mod summary;
+pub mod target;
+pub mod tiles;

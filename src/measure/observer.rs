@@ -1,0 +1,29 @@
+//! Who watches long work, and may stop it?
+
+use crate::base::error::{Error, Result};
+
+/// Watches long work. All methods may be called from any thread.
+pub trait Observer: Sync {
+    /// A stage of `total` steps begins.
+    fn begin(&self, _what: &str, _total: u64) {}
+    /// Steps were finished.
+    fn advance(&self, _steps: u64) {}
+    /// The stage has ended.
+    fn end(&self) {}
+    /// Something that the user should know now.
+    fn note(&self, _text: &str) {}
+    /// Whether the user asked to stop.
+    fn stopped(&self) -> bool {
+        false
+    }
+
+    /// An error if the user asked to stop.
+    fn check(&self) -> Result<()> {
+        if self.stopped() { Err(Error::Interrupted) } else { Ok(()) }
+    }
+}
+
+/// Watches nothing.
+pub struct Unobserved;
+
+impl Observer for Unobserved {}

@@ -1,0 +1,116 @@
+//! How far can each strategy go within its budget?
+//!
+//! A pilot on a few receivers times one pass, counts its work and guesses its error; budgets then double from one pass
+//! up to the last that fits. The guess says how good the reference must be.
+
+use super::clock::timed;
+use super::errors::Truth;
+use super::target::Target;
+use crate::base::error::Result;
+use crate::base::random::RunKey;
+use crate::render::counts::Counts;
+use crate::render::film::Film;
+use crate::render::passes::Plan;
+use crate::strategy::BuildContext;
+use crate::strategy::registry::Configured;
+
+/// What one strategy may spend in one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Most passes.
+    pub passes: u32,
+    /// Most CPU seconds of sampling.
+    pub seconds: f64,
+}
+
+/// What a pilot found.
+#[derive(Clone, Debug)]
+pub struct Pilot {
+    /// Expected CPU seconds of coming to every receiver once, whatever the number of passes.
+    arrive_s: f64,
+    /// Expected CPU seconds of a pass over all receivers.
+    pass_s: f64,
+    /// relMSE that more passes take away, times passes.
+    variance: f64,
+    /// relMSE that stays.
+    bias2: f64,
+    /// What became of the samples.
+    pub counts: Counts,
+}
+
+/// Receivers of a pilot.
+pub(super) const RECEIVERS: usize = 512;
+
+/// Passes of a pilot.
+const PASSES: u32 = 4;
+
+impl Pilot {
+    /// Tries a strategy on a few receivers (`few`, with their truth) of a target of `all` receivers.
+    pub fn run(few: &Target<'_>, truth: &Truth, all: usize, strategy: &Configured, seed: u64) -> Result<Self> {
+        let sampler = strategy.build(BuildContext { stage: few.stage, seed })?;
+        let plan = |run| Plan {
+            stage: few.stage,
+            receivers: &few.receivers,
+            sampler: sampler.as_ref(),
+            key: RunKey { seed: !seed, run },
+        };
+        let film = |run, passes| {
+            let mut film = Film::new(few.receivers.len());
+            let ((), spent) = timed(|| plan(run).run(passes, &mut film));
+            (film.image(), spent.cpu)
+        };
+        let scale = all as f64 / few.receivers.len().max(1) as f64;
+        film(0, 1); // Warms the caches.
+        let one = film(0, 1).1 * scale;
+        let (first, several) = film(1, PASSES);
+        let (second, _) = film(2, PASSES);
+        let pass_s = ((several * scale - one) / f64::from(PASSES - 1)).max(0.0);
+        let errors = truth.errors(&first).rel_mse;
+        let both = |i: usize| {
+            let r = truth.mean()[i].as_dvec3();
+            (first[i].as_dvec3() - r) * (second[i].as_dvec3() - r) * truth.weight(i)
+        };
+        let bias2 = truth.mean_over(both).max(0.0);
+        let counts = plan(3).run_counting(PASSES, &mut Film::new(few.receivers.len()));
+        Ok(Self {
+            arrive_s: (one - pass_s).max(0.0),
+            pass_s,
+            variance: (errors - bias2).max(0.0) * f64::from(PASSES),
+            bias2,
+            counts,
+        })
+    }
+
+    /// The budgets that fit, in passes: 1, 2, 4 and so on; none if one pass is too long.
+    pub fn ladder(&self, budget: Budget) -> Vec<u32> {
+        let seconds = |rung: u32| f64::from(rung + 1) * self.arrive_s + f64::from(1u32 << rung) * self.pass_s;
+        (0..31)
+            .take_while(|&rung| 1 << rung <= budget.passes && seconds(rung) <= budget.seconds)
+            .map(|rung| 1 << rung)
+            .collect()
+    }
+
+    /// Expected CPU seconds of the first pass.
+    pub fn first_pass_s(&self) -> f64 {
+        self.arrive_s + self.pass_s
+    }
+
+    /// Expected relMSE after so many passes.
+    pub fn expected_rel_mse(&self, passes: u32) -> f64 {
+        self.bias2 + self.variance / f64::from(passes.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ladders_double_within_passes_and_seconds() {
+        let pilot = Pilot { arrive_s: 0.1, pass_s: 0.1, variance: 1.0, bias2: 0.0, counts: Counts::default() };
+        assert_eq!(pilot.ladder(Budget { passes: 20, seconds: 100.0 }), [1, 2, 4, 8, 16]);
+        // 8 passes in 4 blocks take 0.4 + 0.8 s.
+        assert_eq!(pilot.ladder(Budget { passes: 64, seconds: 1.25 }), [1, 2, 4, 8]);
+        assert!(pilot.ladder(Budget { passes: 64, seconds: 0.1 }).is_empty());
+    }
+}

@@ -1,0 +1,20 @@
+//! The raw facts of a comparison, as they lie on disk: which values, in which units, in which schema.
+//!
+//! A result folder holds `run.json` (a [`RunRecord`]: what was run, where, and what needs all runs together) and `runs.csv`
+//! (one [`Row`] per strategy, run and budget). Tables, pages and plots are made again from these two alone. Numbers are in base
+//! units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none.
+
+mod number;
+pub mod row;
+pub mod run;
+pub mod scene;
+pub mod store;
+pub mod summary;
+
+pub use row::Row;
+pub use run::{Machine, RunRecord};
+pub use scene::{ReferenceRecord, SceneRecord};
+pub use summary::{Claim, Counts, Interval, Summary};
+
+/// Version of the files' layout; files of another version are refused, never guessed at.
+pub const SCHEMA: u32 = 1;

@@ -1,0 +1,46 @@
+//! What was run, by what, where.
+
+use super::SceneRecord;
+use serde::{Deserialize, Serialize};
+
+/// Where the figures come from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// The processor's name.
+    pub cpu: String,
+    /// Cores that the run could use.
+    pub cores: u32,
+    /// Operating system and its version.
+    pub os: String,
+}
+
+/// One call of the tool: everything in `run.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunRecord {
+    /// [`SCHEMA`](super::SCHEMA) of the writer.
+    pub schema: u32,
+    /// The command line.
+    pub command: String,
+    /// Day of the run, `2026-11-22`.
+    pub date: String,
+    /// Revision of the source.
+    pub revision: String,
+    /// The user's seed.
+    pub seed: u64,
+    /// Independent runs asked for.
+    pub repeats: u32,
+    /// Where it ran.
+    pub machine: Machine,
+    /// The compiler and its version.
+    pub compiler: String,
+    /// Flags that change the code: target features, profile.
+    pub flags: String,
+    /// What makes the figures doubtful: a busy machine, a debug build.
+    pub warnings: Vec<String>,
+    /// Whether it came to its end; otherwise some rows are missing.
+    pub finished: bool,
+    /// The scenes, in the order asked for.
+    pub scenes: Vec<SceneRecord>,
+}

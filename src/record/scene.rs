@@ -1,0 +1,63 @@
+//! What is known of a scene: its size, what was measured on it, and against which reference.
+
+use super::{Summary, number};
+use serde::{Deserialize, Serialize};
+
+/// The image that errors are taken against.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceRecord {
+    /// "exact sum" or "stratified".
+    pub kind: String,
+    /// Its own relMSE; 0 for an exact sum.
+    #[serde(with = "number")]
+    pub rel_mse: f64,
+    /// Shadow rays it took.
+    pub rays: u64,
+    /// CPU seconds it took.
+    #[serde(with = "number")]
+    pub cpu_s: f64,
+    /// Whether it came from the cache.
+    pub cached: bool,
+    /// Whether it covers the fixed subset of receivers only (1,024 of them) rather than all.
+    pub subset: bool,
+}
+
+/// One scene and all strategies on it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneRecord {
+    /// Its name; rows refer to it.
+    pub name: String,
+    /// The recipe or glTF file.
+    pub file: String,
+    /// Hash of its content.
+    pub hash: String,
+    /// Seed of its generator.
+    pub seed: u64,
+    /// How many lights.
+    pub lights: u64,
+    /// Columns of the image.
+    pub width: u32,
+    /// Rows of the image.
+    pub height: u32,
+    /// Pixels that errors are taken over.
+    pub pixels_measured: u64,
+    /// Pixels that see a surface which receives light.
+    pub receivers: u64,
+    /// Share of pixels that see the sky.
+    #[serde(with = "number")]
+    pub sky_share: f64,
+    /// Share of pixels that see an emitter.
+    #[serde(with = "number")]
+    pub emitter_share: f64,
+    /// The epsilon of relMSE for red, green and blue, in the square of the image's unit.
+    #[serde(with = "number::channels")]
+    pub rel_mse_epsilon: [f64; 3],
+    /// What errors are taken against.
+    pub reference: ReferenceRecord,
+    /// What a reader must know: a default exposure, lights left out.
+    pub notes: Vec<String>,
+    /// One per strategy, in any order.
+    pub summaries: Vec<Summary>,
+}

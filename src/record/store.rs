@@ -1,0 +1,167 @@
+//! Where records lie: result folders that are never overwritten, rows that survive an interruption.
+
+use super::row::COLUMNS;
+use super::{Row, RunRecord, SCHEMA};
+use crate::base::error::{Error, Result};
+use crate::base::file::write_whole;
+use serde::Deserialize;
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// The file of a [`RunRecord`] in its folder.
+pub const RUN_FILE: &str = "run.json";
+/// The file of the [`Row`]s in their folder.
+pub const ROWS_FILE: &str = "runs.csv";
+
+/// Makes `<results>/<date>-<scene>-<short revision>/` and gives its path; where it exists, `-2`, `-3` ... is appended.
+///
+/// `scene` is the scene's or study's name; the revision is shortened to its first 7 characters.
+pub fn create_folder(results: &Path, date: &str, scene: &str, revision: &str) -> Result<PathBuf> {
+    fs::create_dir_all(results).map_err(Error::io("create", results))?;
+    let short: String = revision.chars().take(7).collect();
+    let name = file_name(&format!("{date}-{scene}-{short}"));
+    let mut folder = results.join(&name);
+    for next in 2.. {
+        match fs::create_dir(&folder) {
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => folder = results.join(format!("{name}-{next}")),
+            made => return made.map(|()| folder.clone()).map_err(Error::io("create", folder)),
+        }
+    }
+    unreachable!("the numbers do not end");
+}
+
+/// `name` with everything but ASCII letters, digits, `.`, `_` and `-` replaced by `-`, safe to name a file with.
+pub fn file_name(name: &str) -> String {
+    let kept = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };
+    name.chars().map(kept).collect()
+}
+
+/// Writes `run.json` into `folder`, whole or not at all; it is written again as scenes finish.
+pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
+    let path = folder.join(RUN_FILE);
+    let mut text = serde_json::to_string_pretty(run).map_err(|e| input(&path, None, "", e.to_string()))?;
+    text.push('\n');
+    write_whole(&path, text.as_bytes())
+}
+
+/// Reads `run.json` from `folder`; one of another schema is refused.
+pub fn read_run(folder: &Path) -> Result<RunRecord> {
+    #[derive(Deserialize)]
+    struct Version {
+        schema: u32,
+    }
+    let path = folder.join(RUN_FILE);
+    let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+    let unusable = |e: serde_json::Error| input(&path, Some(e.line()), "", e.to_string());
+    let Version { schema } = serde_json::from_str(&text).map_err(unusable)?;
+    if schema != SCHEMA {
+        let message = format!("is {schema}, this program reads {SCHEMA}: use the version that wrote it");
+        return Err(input(&path, None, "schema", message));
+    }
+    serde_json::from_str(&text).map_err(unusable)
+}
+
+/// The rows of a `runs.csv`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// The finished ones, in the order written.
+    pub rows: Vec<Row>,
+    /// Whether a last line without an end was left out: the run was interrupted while writing it.
+    pub cut_short: bool,
+}
+
+/// Reads `runs.csv` from `folder`.
+///
+/// A last line without its line break is an interrupted write: it is left out and reported in [`Rows::cut_short`]. Anything
+/// else that is not a row is an error that names file, line and column.
+pub fn read_rows(folder: &Path) -> Result<Rows> {
+    let path = folder.join(ROWS_FILE);
+    let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+    parse_rows(&path, &text)
+}
+
+fn parse_rows(path: &Path, text: &str) -> Result<Rows> {
+    let whole = &text[..finished_bytes(text)];
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(whole.as_bytes());
+    let mut rows = Vec::new();
+    for (at, record) in reader.records().enumerate() {
+        // One row is one line (`Row::fields` sees to it), so that the record's number is the line's.
+        let line = Some(at + 1);
+        let record = record.map_err(|e| input(path, line, "", e.to_string()))?;
+        if at == 0 {
+            check_header(path, &record)?;
+        } else {
+            rows.push(Row::parse(&record).map_err(|(column, why)| input(path, line, column, why))?);
+        }
+    }
+    Ok(Rows { rows, cut_short: whole.len() < text.len() })
+}
+
+/// How many bytes of `text` are finished lines.
+fn finished_bytes(text: &str) -> usize {
+    text.rfind('\n').map_or(0, |at| at + 1)
+}
+
+fn check_header(path: &Path, header: &csv::StringRecord) -> Result<()> {
+    if *header == COLUMNS[..] {
+        return Ok(());
+    }
+    let at = header.iter().zip(COLUMNS).position(|(given, expected)| given != expected);
+    let message = match at {
+        Some(at) => format!("column {} is `{}` where schema {SCHEMA} has `{}`", at + 1, &header[at], COLUMNS[at]),
+        None => format!("{} columns where schema {SCHEMA} has {}", header.len(), COLUMNS.len()),
+    };
+    Err(input(path, Some(1), "", message))
+}
+
+/// Appends rows to `runs.csv`, each at once: an interrupted run keeps all finished rows.
+#[derive(Debug)]
+pub struct RowWriter {
+    file: File,
+    path: PathBuf,
+}
+
+impl RowWriter {
+    /// Begins `runs.csv` in `folder`; one that is already there is an error.
+    pub fn create(folder: &Path) -> Result<Self> {
+        let path = folder.join(ROWS_FILE);
+        let file = OpenOptions::new().append(true).create_new(true).open(&path).map_err(Error::io("create", &path))?;
+        let mut writer = Self { file, path };
+        writer.append(&COLUMNS)?;
+        Ok(writer)
+    }
+
+    /// Goes on with the `runs.csv` of an interrupted run and gives the rows that it finished; a line cut short is removed.
+    pub fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
+        let path = folder.join(ROWS_FILE);
+        let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
+        let rows = parse_rows(&path, &text)?.rows;
+        let file = OpenOptions::new().append(true).open(&path).map_err(Error::io("write", &path))?;
+        let finished = finished_bytes(&text);
+        file.set_len(finished as u64).map_err(Error::io("write", &path))?;
+        let mut writer = Self { file, path };
+        if finished == 0 {
+            writer.append(&COLUMNS)?;
+        }
+        Ok((writer, rows))
+    }
+
+    /// Appends one row; it is in the file when this returns.
+    pub fn write(&mut self, row: &Row) -> Result<()> {
+        self.append(&row.fields())
+    }
+
+    fn append<T: AsRef<[u8]>>(&mut self, fields: &[T]) -> Result<()> {
+        let mut line = csv::Writer::from_writer(Vec::new());
+        let write = |e: std::io::Error| Error::io("write", &self.path)(e);
+        line.write_record(fields).map_err(|e| write(e.into()))?;
+        let line = line.into_inner().map_err(|e| write(e.into_error()))?;
+        // One call for the whole line: a `File` has no buffer of its own that could be lost.
+        self.file.write_all(&line).map_err(write)
+    }
+}
+
+fn input(path: &Path, line: Option<usize>, field: &str, message: String) -> Error {
+    Error::Input { file: path.to_owned(), line, field: field.to_owned(), message }
+}

@@ -1,0 +1,109 @@
+//! What is known of a strategy once all its runs at its largest budget are done.
+
+use super::number;
+use serde::{Deserialize, Serialize};
+
+/// A mean over runs and half the width of its 95 % Student-t interval, in the same unit; the half is infinite for a single run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Interval {
+    /// The mean over runs.
+    #[serde(with = "number")]
+    pub mean: f64,
+    /// From the mean to either end.
+    #[serde(with = "number")]
+    pub half_width: f64,
+}
+
+/// What a strategy says about its own estimate.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Claim {
+    /// Right on average.
+    Unbiased,
+    /// Off on average, by design.
+    Biased {
+        /// What is left out or approximated.
+        why: String,
+    },
+    /// Does nothing (`null`): its time is the harness's own.
+    Floor,
+    /// Takes every light (`all`): no choice, no noise from choosing.
+    Ceiling,
+}
+
+/// Work counted in a separate pass of the same code; counts carry over between machines, times do not.
+///
+/// Each pick ends in exactly one of the three early outs or in a shadow ray, if its contribution is not zero for another reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counts {
+    /// Estimates of a receiver: receivers times passes.
+    pub samples: u64,
+    /// Lights that the strategy gave.
+    pub picks: u64,
+    /// Shadow rays.
+    pub shadow_rays: u64,
+    /// Shadow rays that met an occluder.
+    pub blocked: u64,
+    /// Picks dropped because the light sends nothing in that direction (outside a spot's cone).
+    pub zero_intensity: u64,
+    /// Picks dropped because the light is below the receiver's horizon.
+    pub behind_surface: u64,
+    /// Picks dropped because the receiver is behind a one-sided emitter.
+    pub behind_light: u64,
+}
+
+/// One strategy on one scene at its largest budget.
+///
+/// Errors are over receiver pixels against the scene's reference. With [`error`](Self::error) or
+/// [`skipped`](Self::skipped) set the numbers mean nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Summary {
+    /// Name and parameters: `light-tree:arity=8,split=0.5`.
+    pub strategy: String,
+    /// What it says about its bias.
+    pub claim: Claim,
+    /// Whether it chooses lights; `all` and `null` do not.
+    pub chooses: bool,
+    /// Independent runs.
+    pub runs: u32,
+    /// Passes at the largest budget.
+    pub passes: u32,
+    /// CPU seconds of building, mean over runs.
+    #[serde(with = "number")]
+    pub setup_cpu_s: f64,
+    /// CPU seconds of sampling all passes, without set-up, mean over runs.
+    #[serde(with = "number")]
+    pub cpu_s: f64,
+    /// Wall seconds of sampling, mean over runs.
+    #[serde(with = "number")]
+    pub wall_s: f64,
+    /// Bytes on the heap after building.
+    pub heap_bytes: u64,
+    /// relMSE.
+    pub rel_mse: Interval,
+    /// MSE, in the square of the image's unit.
+    pub mse: Interval,
+    /// relMSE without each run's worst 0.1 % of pixels.
+    pub rel_mse_trimmed: Interval,
+    /// Squared bias b^2 in units of relMSE, freed of noise; may come out negative.
+    pub rel_bias2: Interval,
+    /// Energy ratio less 1: the bias of the image's mean, as a share of it.
+    pub mean_bias: Interval,
+    /// The bias of the image's mean that a 5 % test would find with 80 % power, as a share of it.
+    #[serde(with = "number")]
+    pub detectable_bias: f64,
+    /// V: variance in units of relMSE times CPU seconds, set-up left out.
+    #[serde(with = "number")]
+    pub variance_seconds: f64,
+    /// Work, from the counting pass.
+    pub counts: Counts,
+    /// Whether the two halves of the runs differ by more than their intervals.
+    pub unstable: bool,
+    /// Why it was not run: "skipped: about 40 s".
+    pub skipped: Option<String>,
+    /// Why it failed.
+    pub error: Option<String>,
+}

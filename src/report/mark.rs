@@ -1,0 +1,68 @@
+//! How a strategy is told from the others in a plot: colour, shape, and hollow and dashed when it is biased.
+
+use crate::record::Claim;
+use plotters::prelude::*;
+use plotters::style::Color;
+
+/// Colours that stay apart for the colour-blind and on white (after Okabe and Ito 2008, the yellow left out).
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(117, 76, 41),
+];
+
+/// The corners of the shapes, about a centre, in pixels; a circle has none.
+const SHAPES: [&[(i32, i32)]; 5] = [
+    &[],
+    &[(-5, -5), (5, -5), (5, 5), (-5, 5)],
+    &[(0, -7), (6, 5), (-6, 5)],
+    &[(0, -7), (7, 0), (0, 7), (-7, 0)],
+    &[(0, 7), (6, -5), (-6, -5)],
+];
+
+/// The look of one strategy.
+#[derive(Clone, Copy)]
+pub(super) struct Mark {
+    /// Of lines and shapes.
+    pub(super) colour: RGBColor,
+    shape: &'static [(i32, i32)],
+    /// Drawn dashed, with hollow shapes.
+    pub(super) hollow: bool,
+}
+
+impl Mark {
+    /// The look of the `nth` strategy that is neither floor nor ceiling: 35 differ. Floor and ceiling are grey and black.
+    pub(super) fn new(claim: &Claim, nth: usize) -> Self {
+        let (colour, shape) = match claim {
+            Claim::Floor => (RGBColor(150, 150, 150), SHAPES[1]),
+            Claim::Ceiling => (BLACK, SHAPES[1]),
+            // 7 and 5 have no common divisor: neighbours differ in both.
+            Claim::Unbiased | Claim::Biased { .. } => (COLOURS[nth % COLOURS.len()], SHAPES[nth % SHAPES.len()]),
+        };
+        Self { colour, shape, hollow: matches!(claim, Claim::Biased { .. }) }
+    }
+
+    /// Draws the shape about a pixel.
+    pub(super) fn draw<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, plotters::coord::Shift>,
+        (x, y): (i32, i32),
+    ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
+        // The inside hides the lines behind it, so that hollow shapes read as hollow.
+        let inside = if self.hollow { WHITE.filled() } else { self.colour.filled() };
+        let edge = if self.hollow { self.colour.stroke_width(2) } else { WHITE.stroke_width(1) };
+        if self.shape.is_empty() {
+            area.draw(&Circle::new((x, y), 6, inside))?;
+            return area.draw(&Circle::new((x, y), 6, edge));
+        }
+        let mut corners: Vec<(i32, i32)> = self.shape.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+        area.draw(&Polygon::new(corners.clone(), inside))?;
+        // The outline goes on to the second corner, so that the joint at the first one closes.
+        corners.extend_from_within(..2);
+        area.draw(&PathElement::new(corners, edge))
+    }
+}

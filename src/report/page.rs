@@ -1,0 +1,44 @@
+//! The same in Markdown: a page for a scene, and a shorter section for a page that people write.
+
+use super::table::{facts, sheets, warnings};
+use crate::record::{Row, RunRecord, SceneRecord};
+use std::fmt::Write;
+
+/// The page of a scene in GitHub's Markdown, with the command and the conditions that it came from.
+///
+/// `plot` is the address of its plot as seen from the page; `rows` may hold other scenes too.
+pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
+    let mut text = opening("#", run, scene, plot);
+    for sheet in sheets(scene, rows) {
+        _ = write!(text, "\n{}", sheet.markdown(2));
+    }
+    let machine = &run.machine;
+    _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", run.command);
+    _ = writeln!(text, "- date: {}", run.date);
+    _ = writeln!(text, "- revision: {}", run.revision);
+    _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
+    _ = writeln!(text, "- compiler: {}; {}", run.compiler, run.flags);
+    _ = writeln!(text, "- seed: {}", run.seed);
+    text
+}
+
+/// A scene in short, for [`splice`](super::splice::splice): what was measured, the plot, error against time, the command.
+///
+/// `plot` is the address of its plot as seen from the page.
+pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
+    let mut text = opening("##", run, scene, plot);
+    if let Some(answer) = sheets(scene, rows).first() {
+        _ = write!(text, "\n{}", answer.markdown(3));
+    }
+    _ = writeln!(text, "\nMade by `{}` ({}, revision {}, {}).", run.command, run.date, run.revision, run.machine.cpu);
+    text
+}
+
+/// Name, facts, notes, warnings and plot.
+fn opening(heading: &str, run: &RunRecord, scene: &SceneRecord, plot: &str) -> String {
+    let mut text = format!("{heading} {}\n\n", scene.name);
+    facts(run, scene).iter().chain(&scene.notes).for_each(|fact| _ = writeln!(text, "- {fact}"));
+    warnings(run, scene).iter().for_each(|warning| _ = writeln!(text, "- **{warning}**"));
+    _ = write!(text, "\n![{}: relMSE against CPU seconds]({plot})\n", scene.name);
+    text
+}

@@ -1,0 +1,85 @@
+//! Pictures keep their numbers, and are never half-written.
+#![cfg(feature = "image")]
+
+use citylights::base::error::Error;
+use citylights::image::{self, Picture, exr, png};
+use std::fs;
+
+fn night() -> Picture {
+    let mut pixels: Vec<[f32; 3]> =
+        (0..37 * 21).map(|i| [1e-7 * i as f32, (i as f32 * 0.37).sin(), 1e9 / (i as f32 + 1.0)]).collect();
+    pixels[5] = [f32::MIN_POSITIVE / 4.0, -0.0, f32::MAX];
+    Picture { width: 37, height: 21, pixels }
+}
+
+#[test]
+fn exr_keeps_every_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("night.exr");
+    let mut picture = night();
+    picture.pixels[9] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+    assert_eq!(image::write(&path, &picture, 7.0).expect("written"), 1);
+    let back = exr::read(&path).expect("read");
+    assert_eq!((back.width, back.height), (37, 21));
+    let bits = |p: &Picture| p.pixels.iter().map(|c| c.map(f32::to_bits)).collect::<Vec<_>>();
+    assert!(bits(&back) == bits(&picture));
+    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the temporary file is gone");
+}
+
+#[test]
+fn png_is_exposed_encoded_and_clamped() {
+    let pixels = vec![[0.0, 0.5, 1.0], [0.002, 9.0, -1.0], [f32::NAN, 0.0, 0.0], [0.25, f32::INFINITY, 0.1]];
+    let picture = Picture { width: 2, height: 2, pixels };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("small.PNG");
+    assert_eq!(image::write(&path, &picture, 0.5).expect("written"), 2);
+    let texels = ::image::load_from_memory(&fs::read(&path).expect("read")).expect("a PNG").to_rgb8().into_raw();
+    // 0.25 and 0.5 are 137 and 188 in sRGB; 0.001 is on its straight part: 255 * 12.92 * 0.001 = 3.3.
+    assert_eq!(texels, [0, 137, 188, 3, 255, 0, 255, 0, 255, 255, 0, 255]);
+}
+
+#[test]
+fn the_same_picture_gives_the_same_bytes() {
+    assert!(png::encode(&night(), 1.0).expect("png") == png::encode(&night(), 1.0).expect("png"));
+    let first = exr::encode(&night()).expect("exr");
+    assert!((0..8).all(|_| exr::encode(&night()).expect("exr") == first));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["missing/a.png", "missing/a.exr"] {
+        let error = image::write(&folder.path().join(name), &night(), 1.0).expect_err("no such folder");
+        assert!(matches!(&error, Error::Io { path, .. } if path.ends_with(name)), "{error}");
+    }
+    // A folder that bears the picture's name: the rename fails, and nothing is left behind.
+    fs::create_dir_all(folder.path().join("taken.png/inside")).expect("made");
+    let error = image::write(&folder.path().join("taken.png"), &night(), 1.0).expect_err("a folder is there");
+    assert!(matches!(error, Error::Io { .. }), "{error}");
+    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1);
+}
+
+#[test]
+fn other_formats_and_wrong_sizes_are_refused() {
+    for name in ["a.jpg", "a", "exr"] {
+        let error = image::write(name.as_ref(), &night(), 1.0).expect_err("no format");
+        assert!(error.to_string().contains("use .png or .exr"), "{error}");
+    }
+    let short = Picture { width: 3, height: 2, pixels: vec![[0.0; 3]; 5] };
+    assert!(png::encode(&short, 1.0).is_err() && exr::encode(&short).is_err());
+    let empty = Picture { width: 0, height: 0, pixels: Vec::new() };
+    assert!(png::encode(&empty, 1.0).is_err() && exr::encode(&empty).is_err());
+}
+
+#[test]
+fn a_damaged_exr_is_an_error_and_no_panic() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("cut.exr");
+    let whole = exr::encode(&night()).expect("exr");
+    for length in (0..whole.len()).step_by(7) {
+        fs::write(&path, &whole[..length]).expect("written");
+        let error = exr::read(&path).expect_err("cut short");
+        assert!(error.to_string().contains("cut.exr"), "{error}");
+    }
+    assert!(matches!(exr::read(&folder.path().join("none.exr")), Err(Error::Io { .. })));
+}

@@ -1,0 +1,313 @@
+//! Tables, pages and plots follow from the raw rows alone, and drift is noticed.
+#![cfg(feature = "plots")]
+
+use citylights::record::store::{self, RowWriter};
+use citylights::record::{
+    Claim, Counts, Interval, Machine, ReferenceRecord, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+};
+use citylights::report::{self, Drift, splice};
+use std::fs;
+use std::path::Path;
+
+/// A made-up strategy: its error is b^2 + V/t.
+struct Maker {
+    strategy: &'static str,
+    claim: Claim,
+    setup_s: f64,
+    pass_s: f64,
+    v: f64,
+    bias2: f64,
+}
+
+const RUNS: u32 = 4;
+
+impl Maker {
+    fn passes(&self) -> u32 {
+        // Budgets double to about two seconds.
+        1 << (2.0 / self.pass_s).log2().max(0.0) as u32
+    }
+
+    /// Runs scatter by a factor that depends on the run and the budget, with mean 1.
+    fn error(&self, run: u32, passes: u32) -> f64 {
+        let scatter = [0.93, 1.05, 1.09, 0.93][((run + passes.ilog2()) % 4) as usize];
+        self.bias2 + scatter * self.v / (f64::from(passes) * self.pass_s)
+    }
+
+    fn rows(&self) -> impl Iterator<Item = Row> {
+        let budgets = (0..).map(|n| 1u32 << n).take_while(|&passes| passes <= self.passes());
+        budgets.flat_map(|passes| (0..RUNS).map(move |run| (passes, run))).map(|(passes, run)| {
+            let error = self.error(run, passes);
+            Row {
+                scene: "village".to_owned(),
+                strategy: self.strategy.to_owned(),
+                run,
+                passes,
+                setup_cpu_s: self.setup_s,
+                cpu_s: f64::from(passes) * self.pass_s,
+                wall_s: 1.1 * f64::from(passes) * self.pass_s,
+                heap_bytes: 123_456,
+                mse: 40.0 * error,
+                rel_mse: error,
+                rel_mse_trimmed: 0.8 * error,
+                trimmed_share: if error > 0.0 { 0.2 } else { 0.0 },
+                energy_ratio: 0.999,
+                deciles: std::array::from_fn(|i| error * 2.0 / (1.0 + i as f64)),
+                error: None,
+            }
+        })
+    }
+
+    fn summary(&self) -> Summary {
+        let rows: Vec<Row> = self.rows().filter(|r| r.passes == self.passes()).collect();
+        let mean = rows.iter().map(|r| r.rel_mse).sum::<f64>() / f64::from(RUNS);
+        let picks = 20_000 * u64::from(self.passes());
+        Summary {
+            strategy: self.strategy.to_owned(),
+            claim: self.claim.clone(),
+            chooses: !matches!(self.claim, Claim::Floor | Claim::Ceiling),
+            runs: RUNS,
+            passes: self.passes(),
+            setup_cpu_s: self.setup_s,
+            cpu_s: rows[0].cpu_s,
+            wall_s: rows[0].wall_s,
+            heap_bytes: 123_456,
+            rel_mse: Interval { mean, half_width: 0.12 * mean },
+            mse: Interval { mean: 40.0 * mean, half_width: 4.8 * mean },
+            rel_mse_trimmed: Interval { mean: 0.8 * mean, half_width: 0.05 * mean },
+            rel_bias2: Interval { mean: self.bias2, half_width: 3e-5 },
+            mean_bias: Interval { mean: -0.1 * self.bias2.abs().sqrt(), half_width: 0.000_42 },
+            detectable_bias: 0.000_61,
+            variance_seconds: self.v,
+            counts: Counts {
+                samples: picks,
+                picks,
+                shadow_rays: picks / 2,
+                blocked: picks / 8,
+                zero_intensity: 0,
+                behind_surface: picks / 3,
+                behind_light: 0,
+            },
+            unstable: self.strategy == "uniform",
+            skipped: None,
+            error: None,
+        }
+    }
+}
+
+fn makers() -> Vec<Maker> {
+    let biased = |why: &str| Claim::Biased { why: why.to_owned() };
+    let maker = |strategy, claim, setup_s, pass_s, v, bias2| Maker { strategy, claim, setup_s, pass_s, v, bias2 };
+    vec![
+        maker("all", Claim::Ceiling, 0.0, 1.7, 0.0, 0.0),
+        maker("null", Claim::Floor, 0.0, 0.002, 0.0, 0.997),
+        maker("uniform", Claim::Unbiased, 0.000_1, 0.006, 12.0, 0.0),
+        maker("power", Claim::Unbiased, 0.000_8, 0.007, 3.1, 0.0),
+        maker("light-tree:arity=8,split=0.5,importance=conty", Claim::Unbiased, 0.045, 0.019, 0.071, 0.0),
+        maker("range:cutoff=0.5", biased("drops lights below half a display step"), 0.02, 0.011, 0.12, 0.013),
+        maker("range:cutoff=9", biased("drops lights below nine display steps"), 0.015, 0.004, 0.06, 0.21),
+        maker("reservoir:candidates=32,reuse=biased", biased("reuses neighbours unweighted"), 0.0, 0.03, 0.3, -2e-6),
+    ]
+}
+
+fn skipped(strategy: &str) -> Summary {
+    let nothing = Maker { strategy: "", claim: Claim::Unbiased, setup_s: 0.0, pass_s: 1.0, v: f64::NAN, bias2: 0.0 };
+    let skipped = Some("skipped: about 40 s".to_owned());
+    Summary { strategy: strategy.to_owned(), passes: 1, skipped, unstable: false, ..nothing.summary() }
+}
+
+fn record() -> (RunRecord, Vec<Row>) {
+    let mut rows: Vec<Row> = makers().iter().flat_map(Maker::rows).collect();
+    let failure = "a light that contributes is never chosen: light 17, p = 0.0001".to_owned();
+    rows.push(Row::failed("village".to_owned(), "broken".to_owned(), 0, 1, failure.clone()));
+    let mut summaries: Vec<Summary> = makers().iter().map(Maker::summary).collect();
+    summaries.push(skipped("lightcuts:error=0.02"));
+    summaries.push(Summary { skipped: None, error: Some(failure), ..skipped("broken") });
+    let scene = SceneRecord {
+        name: "village".to_owned(),
+        file: "scenes/village.toml".to_owned(),
+        hash: "9f86d081".to_owned(),
+        seed: 7,
+        lights: 12_345,
+        width: 320,
+        height: 180,
+        pixels_measured: 50_112,
+        receivers: 50_112,
+        sky_share: 0.1,
+        emitter_share: 0.03,
+        rel_mse_epsilon: [1.23e-6, 2e-6, 7.5e-7],
+        reference: ReferenceRecord {
+            kind: "stratified".to_owned(),
+            rel_mse: 3.2e-6,
+            rays: 618_632_640,
+            cpu_s: 312.5,
+            cached: true,
+            subset: false,
+        },
+        notes: vec!["exposure 1: the scene states none".to_owned()],
+        summaries,
+    };
+    let run = RunRecord {
+        schema: SCHEMA,
+        command: "citylights compare scenes/village.toml --repeats 4".to_owned(),
+        date: "2026-11-22".to_owned(),
+        revision: "67eec73".to_owned(),
+        seed: 1,
+        repeats: RUNS,
+        machine: Machine { cpu: "A Processor 3000".to_owned(), cores: 2, os: "Linux 6.1".to_owned() },
+        compiler: "rustc 1.95.0".to_owned(),
+        flags: "release, x86-64-v2".to_owned(),
+        warnings: vec!["the load average was 3.1 on 2 cores".to_owned()],
+        finished: true,
+        scenes: vec![scene],
+    };
+    (run, rows)
+}
+
+fn stored(folder: &Path) {
+    let (run, rows) = record();
+    store::write_run(folder, &run).expect("written");
+    let mut writer = RowWriter::create(folder).expect("begun");
+    rows.iter().for_each(|row| writer.write(row).expect("written"));
+}
+
+#[test]
+fn the_terminal_table_is_the_recorded_one() {
+    let (run, rows) = record();
+    let table = report::table(&run, &run.scenes[0], &rows);
+    let widest = table.lines().map(|line| line.chars().count()).max().expect("lines");
+    assert!(widest <= 140, "{widest} columns");
+    insta::assert_snapshot!(table);
+}
+
+#[test]
+fn the_page_is_the_recorded_one() {
+    let (run, rows) = record();
+    insta::assert_snapshot!(report::page(&run, &run.scenes[0], &rows, "village.svg"));
+}
+
+#[test]
+fn a_section_holds_the_answer_and_where_it_came_from() {
+    let (mut run, rows) = record();
+    run.finished = false;
+    run.scenes[0].reference.rel_mse = 0.002;
+    let section = report::section(&run, &run.scenes[0], &rows, "2026-11-22-village-67eec73/village.svg");
+    for part in [
+        "## village\n",
+        "](2026-11-22-village-67eec73/village.svg)",
+        "| `power` | unbiased | 3.10 |",
+        "Made by `citylights compare scenes/village.toml --repeats 4` (2026-11-22, revision 67eec73,",
+        "- **not finished: some strategies or runs are missing**",
+        "- **the best error is only 29 times the reference's own",
+    ] {
+        assert!(section.contains(part), "{part}\n{section}");
+    }
+    assert!(!section.contains("Work"));
+}
+
+#[test]
+fn columns_that_cannot_vary_are_left_out() {
+    let (mut run, rows) = record();
+    run.scenes[0].summaries.retain(|s| s.claim == Claim::Unbiased);
+    run.scenes[0].summaries.iter_mut().for_each(|s| s.counts.blocked = 0);
+    let table = report::table(&run, &run.scenes[0], &rows);
+    for absent in ["claim", "b²", "t*", "blocked", "dark direction", "behind light"] {
+        assert!(!table.contains(&format!("{absent} ")) && !table.contains(&format!("{absent}\n")), "{absent}\n{table}");
+    }
+    assert!(table.contains("behind surface"));
+}
+
+#[test]
+fn strategies_without_numbers_still_make_a_table_and_a_plot() {
+    let (mut run, _) = record();
+    run.scenes[0].summaries.retain(|s| s.error.is_some() || s.skipped.is_some());
+    let table = report::table(&run, &run.scenes[0], &[]);
+    assert!(table.contains("skipped: about 40 s") && table.contains("failed: a light"), "{table}");
+    assert!(report::plot(&run.scenes[0], &[]).expect("drawn").contains("no points to draw"));
+}
+
+#[test]
+fn the_plot_names_every_curve_and_what_it_leaves_out() {
+    let (run, rows) = record();
+    let svg = report::plot(&run.scenes[0], &rows).expect("drawn");
+    for maker in makers() {
+        let name = maker.strategy.split(':').next().expect("a name");
+        assert!(svg.contains(&format!("{name}\n</text>")), "{name}");
+    }
+    assert!(svg.contains("exact, not drawn: all") && !svg.contains("broken") && !svg.contains("NaN"));
+    if let Some(path) = std::env::var_os("CITYLIGHTS_PLOT") {
+        fs::write(path, &svg).expect("written");
+    }
+    assert!(svg == report::plot(&run.scenes[0], &rows).expect("drawn"), "the same rows give the same bytes");
+}
+
+#[test]
+fn a_plot_of_one_budget_and_one_run_is_drawn() {
+    let (run, rows) = record();
+    let one: Vec<Row> = rows.iter().filter(|r| r.strategy == "power" && r.run == 0 && r.passes == 1).cloned().collect();
+    let svg = report::plot(&run.scenes[0], &one).expect("drawn");
+    assert!(svg.contains("power") && !svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn an_edited_page_or_row_is_drift() {
+    let folder = tempfile::tempdir().expect("a folder");
+    stored(folder.path());
+    let missing = report::check(folder.path()).expect("checked");
+    assert!(matches!(&missing[..], [Drift::Missing(page), Drift::Missing(_)] if page.ends_with("village.md")));
+    let written = report::report(folder.path()).expect("written");
+    assert_eq!(written.len(), 2);
+    assert_eq!(report::check(folder.path()).expect("checked"), []);
+
+    let page = fs::read_to_string(&written[0]).expect("read");
+    fs::write(&written[0], page.replacen("light-tree", "light-bush", 1)).expect("written");
+    let line = page.lines().position(|l| l.contains("light-tree")).expect("in the table") + 1;
+    let expected = Drift::Differs { file: written[0].clone(), line };
+    assert_eq!(report::check(folder.path()).expect("checked"), [expected]);
+    assert_eq!(report::report(folder.path()).expect("written"), written);
+    assert_eq!(report::check(folder.path()).expect("checked"), []);
+
+    let rows_file = folder.path().join(store::ROWS_FILE);
+    let rows = fs::read_to_string(&rows_file).expect("read");
+    fs::write(&rows_file, rows.replacen(",0.019,", ",0.9,", 1)).expect("written");
+    let drifts = report::check(folder.path()).expect("checked");
+    assert!(matches!(&drifts[..], [Drift::Differs { file, .. }] if file.ends_with("village.svg")), "{drifts:?}");
+}
+
+#[test]
+fn a_splice_keeps_what_people_wrote() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = folder.path().join("README.md");
+    let read = || fs::read_to_string(&page).expect("read");
+    splice::splice(&page, "village", "| old |\n").expect("made");
+    let section =
+        |body: &str| format!("<!-- citylights:begin village -->\n\n{body}\n\n<!-- citylights:end village -->");
+    assert_eq!(read(), format!("{}\n", section("| old |")));
+
+    fs::write(&page, format!("# Results\n\nwords  \n{}\n\nmore words, no last line break", section("| old |")))
+        .expect("written");
+    assert!(!splice::is_current(&page, "village", "| new |").expect("read"));
+    splice::splice(&page, "village", "| new |").expect("spliced");
+    let spliced = format!("# Results\n\nwords  \n{}\n\nmore words, no last line break", section("| new |"));
+    assert_eq!(read(), spliced);
+    assert!(splice::is_current(&page, "village", "| new |").expect("read"));
+    splice::splice(&page, "town", "| town |").expect("appended");
+    assert!(read().starts_with(&format!("{spliced}\n\n<!-- citylights:begin town -->\n\n| town |")), "{}", read());
+}
+
+#[test]
+fn a_broken_section_is_named_and_left_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = folder.path().join("README.md");
+    let (begin, end) = ("<!-- citylights:begin a -->", "<!-- citylights:end a -->");
+    for (text, expected) in [
+        (format!("words\n{begin}\n"), "README.md:2: this section has no `<!-- citylights:end a -->`"),
+        (format!("{end}\n"), "README.md:1: this section has no `<!-- citylights:begin a -->`"),
+        (format!("{end}\n\n{begin}\n"), "README.md:3: section `a` ends before it begins"),
+        (format!("{begin}\n{end}\n{begin}\n{end}\n"), "README.md:3: section `a` stands here twice"),
+    ] {
+        fs::write(&page, &text).expect("written");
+        let error = splice::splice(&page, "a", "body").expect_err("broken").to_string();
+        assert!(error.ends_with(expected), "{error}");
+        assert_eq!(fs::read_to_string(&page).expect("read"), text);
+    }
+}

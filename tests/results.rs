@@ -1,0 +1,220 @@
+//! Raw results keep every number, and a run that dies keeps its rows.
+#![cfg(feature = "measure")]
+
+use citylights::record::store::{self, RowWriter};
+use citylights::record::{
+    Claim, Counts, Interval, Machine, ReferenceRecord, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+};
+use std::fs;
+use std::path::Path;
+
+fn row(run: u32) -> Row {
+    Row {
+        scene: "village, \"small\"".to_owned(),
+        strategy: "light-tree:arity=8,split=0.5".to_owned(),
+        run,
+        passes: 64,
+        setup_cpu_s: 0.1 + 0.2,
+        cpu_s: 1.0 / 3.0,
+        wall_s: 5e-324,
+        heap_bytes: u64::MAX,
+        mse: f64::INFINITY,
+        rel_mse: f64::MAX,
+        rel_mse_trimmed: -0.0,
+        trimmed_share: 1e-300,
+        energy_ratio: f64::NEG_INFINITY,
+        deciles: std::array::from_fn(|i| 1.0 / (i as f64 + 3.0)),
+        error: None,
+    }
+}
+
+fn record() -> RunRecord {
+    let value = |mean| Interval { mean, half_width: 0.1 * mean };
+    RunRecord {
+        schema: SCHEMA,
+        command: "citylights compare scenes/village.toml".to_owned(),
+        date: "2026-11-22".to_owned(),
+        revision: "67eec73".to_owned(),
+        seed: 1,
+        repeats: 16,
+        machine: Machine { cpu: "a processor".to_owned(), cores: 2, os: "an OS".to_owned() },
+        compiler: "rustc 1.95.0".to_owned(),
+        flags: "release, x86-64".to_owned(),
+        warnings: vec!["two other processes ran".to_owned()],
+        finished: true,
+        scenes: vec![SceneRecord {
+            name: "village".to_owned(),
+            file: "scenes/village.toml".to_owned(),
+            hash: "abcd".to_owned(),
+            seed: 7,
+            lights: 1000,
+            width: 320,
+            height: 180,
+            pixels_measured: 50_000,
+            receivers: 50_000,
+            sky_share: 0.1,
+            emitter_share: 0.03,
+            rel_mse_epsilon: [1e-4, 2e-4, f64::INFINITY],
+            reference: ReferenceRecord {
+                kind: "exact sum".to_owned(),
+                rel_mse: 0.0,
+                rays: 50_000_000,
+                cpu_s: 12.5,
+                cached: false,
+                subset: false,
+            },
+            notes: vec!["exposure 1: the scene states none".to_owned()],
+            summaries: vec![Summary {
+                strategy: "range:cutoff=0.5".to_owned(),
+                claim: Claim::Biased { why: "drops lights below half a display step".to_owned() },
+                chooses: true,
+                runs: 16,
+                passes: 64,
+                setup_cpu_s: 0.01,
+                cpu_s: 2.0,
+                wall_s: 2.1,
+                heap_bytes: 4096,
+                rel_mse: value(0.25),
+                mse: Interval { mean: f64::NAN, half_width: f64::INFINITY },
+                rel_mse_trimmed: value(0.2),
+                rel_bias2: Interval { mean: -1e-5, half_width: f64::NEG_INFINITY },
+                mean_bias: value(-0.01),
+                detectable_bias: 0.002,
+                variance_seconds: 0.5,
+                counts: Counts { samples: 3_200_000, picks: 3_200_000, shadow_rays: 2_000_000, ..Counts::default() },
+                unstable: false,
+                skipped: None,
+                error: None,
+            }],
+        }],
+    }
+}
+
+fn lines(folder: &Path) -> Vec<String> {
+    let text = fs::read_to_string(folder.join(store::ROWS_FILE)).expect("read");
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn rows_come_back_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut writer = RowWriter::create(folder.path()).expect("begun");
+    let why = "no\nlight, \"none\"".to_owned();
+    let failed = Row::failed("village".to_owned(), "broken".to_owned(), 3, 1, why);
+    for r in [row(0), row(1), failed, Row { energy_ratio: f64::NAN, ..row(2) }] {
+        writer.write(&r).expect("written");
+        // Each row is in the file at once, while the writer is still open.
+        assert!(lines(folder.path()).len() > 1);
+    }
+    let back = store::read_rows(folder.path()).expect("read");
+    assert!(!back.cut_short);
+    assert_eq!(back.rows[..2], [row(0), row(1)]);
+    assert_eq!(back.rows[2].error.as_deref(), Some("no light, \"none\""));
+    assert!(back.rows[2].mse.is_nan() && back.rows[2].deciles.iter().all(|d| d.is_nan()));
+    assert!(back.rows[3].energy_ratio.is_nan());
+    let lines = lines(folder.path());
+    assert!(lines[3].contains("broken,3,1,,,,0,,,") && lines[4].contains(",NaN,"), "{lines:?}");
+}
+
+#[test]
+fn records_come_back_with_infinities_and_nan() {
+    let folder = tempfile::tempdir().expect("a folder");
+    store::write_run(folder.path(), &record()).expect("written");
+    let mut back = store::read_run(folder.path()).expect("read");
+    let mse = &mut back.scenes[0].summaries[0].mse;
+    assert!(mse.mean.is_nan() && mse.half_width == f64::INFINITY);
+    let mut expected = record();
+    (mse.mean, expected.scenes[0].summaries[0].mse.mean) = (0.0, 0.0);
+    assert_eq!(back, expected);
+    assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the temporary file is gone");
+}
+
+#[test]
+fn the_schema_is_the_recorded_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    store::write_run(folder.path(), &record()).expect("written");
+    RowWriter::create(folder.path()).expect("begun").write(&row(0)).expect("written");
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("read");
+    // A change here is a change of schema: raise `SCHEMA` with it.
+    insta::assert_snapshot!("schema_1_run_json", read(store::RUN_FILE));
+    insta::assert_snapshot!("schema_1_runs_csv", read(store::ROWS_FILE));
+}
+
+#[test]
+fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut writer = RowWriter::create(folder.path()).expect("begun");
+    (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
+    let path = folder.path().join(store::ROWS_FILE);
+    let whole = fs::read_to_string(&path).expect("read");
+    let last = whole[..whole.len() - 1].rfind('\n').expect("lines") + 1;
+    for cut in [last + 1, last + 20, whole.len() - 1] {
+        fs::write(&path, &whole[..cut]).expect("written");
+        let rows = store::read_rows(folder.path()).expect("read");
+        assert!(rows.cut_short && rows.rows == [row(0), row(1)], "cut at {cut}");
+        let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
+        assert_eq!(finished, [row(0), row(1)]);
+        writer.write(&row(2)).expect("written");
+        assert_eq!(fs::read_to_string(&path).expect("read"), whole);
+    }
+    // Even the header can be cut short.
+    fs::write(&path, &whole[..9]).expect("written");
+    assert!(store::read_rows(folder.path()).expect("read").cut_short);
+    let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
+    assert!(finished.is_empty());
+    (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
+    assert_eq!(fs::read_to_string(&path).expect("read"), whole);
+}
+
+#[test]
+fn what_is_no_row_is_named_by_file_line_and_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut writer = RowWriter::create(folder.path()).expect("begun");
+    (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
+    let path = folder.path().join(store::ROWS_FILE);
+    let whole = fs::read_to_string(&path).expect("read");
+    for (from, to, expected) in [
+        ("inf", "fast", "runs.csv:2: `mse`: `fast` is not a number"),
+        (",64,", ",-1,", "runs.csv:2: `passes`: `-1` is not a whole number"),
+        (",64,", ",,", "runs.csv:2: `passes`: `` is not a whole number"),
+        (",64,", ",64,64,", "runs.csv:2: 25 fields where 24 are expected"),
+        ("cpu_s", "cpu_ms", "runs.csv:1: column 5 is `setup_cpu_ms` where schema 1 has `setup_cpu_s`"),
+        (",error\n", "\n", "runs.csv:1: 23 columns where schema 1 has 24"),
+    ] {
+        fs::write(&path, whole.replacen(from, to, 1)).expect("written");
+        let error = store::read_rows(folder.path()).expect_err("not a row").to_string();
+        assert!(error.ends_with(expected), "{error}");
+    }
+}
+
+#[test]
+fn records_of_another_schema_or_cut_short_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    store::write_run(folder.path(), &record()).expect("written");
+    let path = folder.path().join(store::RUN_FILE);
+    let whole = fs::read_to_string(&path).expect("read");
+    for (from, to, expected) in [
+        ("\"schema\": 1", "\"schema\": 2", "`schema`: is 2, this program reads 1"),
+        ("\"seed\": 1", "\"sed\": 1", "run.json:6: unknown field `sed`"),
+        ("\"inf\"", "\"fast\"", "expected a number, \"inf\", \"-inf\" or \"nan\""),
+    ] {
+        fs::write(&path, whole.replacen(from, to, 1)).expect("written");
+        let error = store::read_run(folder.path()).expect_err("refused").to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    fs::write(&path, &whole[..whole.len() / 2]).expect("written");
+    assert!(store::read_run(folder.path()).is_err());
+}
+
+#[test]
+fn a_result_folder_is_never_overwritten() {
+    let results = tempfile::tempdir().expect("a folder");
+    let results = results.path().join("deep/results");
+    let make = || store::create_folder(&results, "2026-11-22", "old town/1", "67eec73abcdef").expect("made");
+    let names: Vec<_> = (0..3).map(|_| make().file_name().expect("a name").to_string_lossy().into_owned()).collect();
+    let first = "2026-11-22-old-town-1-67eec73";
+    assert_eq!(names, [first.to_owned(), format!("{first}-2"), format!("{first}-3")]);
+    let folder = results.join(first);
+    RowWriter::create(&folder).expect("begun");
+    assert!(RowWriter::create(&folder).is_err(), "rows that are there stay");
+}
