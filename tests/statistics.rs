@@ -70,7 +70,7 @@ fn every_strategy_keeps_its_contract_on_first_night() {
         println!("scenes/first-night.toml is not there yet");
         return;
     }
-    let scene = FIRST_NIGHT(&path);
+    let scene = citylights::scene::recipe::load(&path, &citylights::scene::recipe::Overrides::default()).expect("first-night");
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     all_pass("first-night", &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..Options::default() });
 }

@@ -64,6 +64,12 @@ impl<'a> Picks<'a> {
         debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
         self.list.push(Pick { light, weight, uv: Pick::DRAW });
     }
+
+    /// Picks a point of a light.
+    #[inline]
+    pub fn push_at(&mut self, light: LightId, weight: f32, uv: [f32; 2]) {
+        self.list.push(Pick { light, weight, uv });
+    }
 }
 
 /// What a strategy promises.
