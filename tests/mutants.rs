@@ -90,14 +90,11 @@ impl<const KIND: u8> LightSampler for Sampler<KIND> {
             return;
         }
         let n = self.pmf.len();
-        let light = match KIND {
-            SHIFTED => (index + 1) % n,
-            BEYOND => index + 1,
-            _ => index,
-        };
+        let light = if KIND == BEYOND { index + 1 } else { index };
+        let pmf = if KIND == SHIFTED { self.pmf[(index + 1) % n] } else { pmf };
         let factor = match KIND {
             HEAVY => 1.01,
-            HIDDEN => 1.02,
+            HIDDEN => 1.04,
             _ => 1.0,
         };
         out.push(light as LightId, (factor / pmf) as f32);
@@ -129,9 +126,13 @@ const MUTANTS: &[Entry] = &[
 ];
 
 fn checks(kind: u8) -> Vec<Check> {
+    let options = Options { allocations: Some(counting::allocations), ..Options::default() };
+    checks_with(kind, &options)
+}
+
+fn checks_with(kind: u8, options: &Options) -> Vec<Check> {
     let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
-    let options = Options { receivers: 12, allocations: Some(counting::allocations), ..Options::default() };
-    verify(&strategy, &stage(sixteen()), &options).expect("a sampler")
+    verify(&strategy, &stage(sixteen()), options).expect("a sampler")
 }
 
 fn print(checks: &[Check]) -> String {
@@ -161,13 +162,28 @@ fn the_right_strategy_passes_everything() {
 }
 
 #[test]
+fn a_right_strategy_fails_no_check_oftener_than_its_level() {
+    // 60 seeds at the 1 % level: more than 4 failures of one check have a chance of 3 in 10,000. Few draws at a receiver,
+    // so that rare lights are rare.
+    let mut failures = std::collections::BTreeMap::new();
+    for seed in 100..160 {
+        let options = Options { receivers: 6, draws: 3_000, batches: 100, seed, ..Options::default() };
+        for check in checks_with(RIGHT, &options) {
+            *failures.entry(check.name).or_insert(0) += u32::from(!check.passed);
+        }
+    }
+    println!("failures in 60 seeds: {failures:?}");
+    assert!(failures.values().all(|&n| n <= 4), "{failures:?}, seeds 100 to 159");
+}
+
+#[test]
 fn weights_one_percent_too_great_are_found() {
     rejected(HEAVY, &["weights-total", "reciprocal"], &["picks", "coverage", "same-seed"]);
 }
 
 #[test]
 fn a_dropped_light_that_is_honest_fails_coverage() {
-    rejected(DROPPED, &["coverage", "estimate"], &["weights", "weights-total", "picks", "reciprocal"]);
+    rejected(DROPPED, &["coverage"], &["weights", "weights-total", "picks", "reciprocal"]);
 }
 
 #[test]
@@ -196,13 +212,13 @@ fn global_randomness_fails_the_same_seed_check() {
 }
 
 #[test]
-fn an_index_off_by_one_fails_weights_and_estimate() {
+fn the_weight_of_the_next_light_fails_weights_and_estimate() {
     rejected(SHIFTED, &["reciprocal", "weights", "estimate"], &["coverage", "picks"]);
 }
 
 #[test]
 fn a_bias_behind_intractable_counts_shows_in_the_mean() {
-    rejected(HIDDEN, &["image-mean", "weights"], &["coverage"]);
+    rejected(HIDDEN, &["image-mean"], &["coverage", "picks"]);
 }
 
 #[test]

@@ -10,9 +10,9 @@ use crate::strategy::erased::PickBuffer;
 /// Lights expected fewer times than this in all draws share a bin of the weights check.
 const BIN: f64 = 30.0;
 
-/// Lights expected fewer times than this are left out of the estimate, on both sides of the comparison: the mean of a
-/// handful of great weights is far from normal.
-const FREQUENT: f64 = 100.0;
+/// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
+/// the estimate, on both sides of the comparison; the other checks still hold them.
+const SKEWNESS: f64 = 0.25;
 
 /// From so many expected picks on, the variance measured between batches is trusted alone.
 pub(super) const PLENTY: f64 = 1_000.0;
@@ -32,10 +32,10 @@ pub(super) struct Site {
     pub(super) contributing: Moments,
     pub(super) excess: Moments,
     pub(super) frequent: Moments,
-    /// The sum that `frequent` should be, over the repetitions of the truth, and the variance that its rarest lights
-    /// must have.
+    /// The sum that `frequent` should be, over the repetitions of the truth.
     pub(super) wanted: Moments,
-    pub(super) rare_variance: f64,
+    /// Variance and third central moment of `frequent` in one call, were the picks independent and always as many.
+    pub(super) model: (f64, f64),
     pub(super) bins: Vec<Bin>,
     /// Greatest |weight * expected count - 1| of a pick, and its light.
     pub(super) worst_reciprocal: (f64, u32),
@@ -108,9 +108,8 @@ fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
     let calls = ((options.draws as f64 / a_call / f64::from(batches)).ceil() as u32).max(1);
     let draws = f64::from(calls) * f64::from(batches);
     let (mut bins, bin_of) = bins(&truth, expected.as_deref(), draws);
-    let often = |light: usize| {
-        expected.as_ref().is_none_or(|counts| f64::from(counts[light]) * draws >= FREQUENT) || truth.lights()[light] == 0.0
-    };
+    let steady = expected.as_ref().map(|counts| steady(&truth, counts, draws));
+    let often = |light: usize| steady.as_ref().is_none_or(|steady| steady.lights[light]);
     let (mut picks, mut contributing, mut excess) = (Vec::new(), Vec::new(), Vec::new());
     let (mut whole, mut frequent) = (Vec::new(), Vec::new());
     let mut worst_reciprocal = (0.0f64, 0);
@@ -156,7 +155,6 @@ fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
         frequent.push(sum_frequent * a_call);
     }
     let wanted = truth.sum(often);
-    let rare_variance = expected.as_ref().map_or(0.0, |counts| rare_variance(&truth, counts, draws));
     let of = |values: &[f64]| Moments::of(values.iter().copied());
     Site {
         at: *at,
@@ -168,7 +166,7 @@ fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
         excess: of(&excess),
         frequent: of(&frequent),
         wanted,
-        rare_variance,
+        model: steady.as_ref().map_or((0.0, 0.0), |steady| steady.moments),
         bins,
         worst_reciprocal,
         seen,
@@ -211,17 +209,42 @@ fn bins(truth: &Truth, expected: Option<&[f32]>, draws: f64) -> (Vec<Bin>, Vec<u
     (bins, bin_of)
 }
 
-/// Variance of a call's estimate that comes from lights of 100 to 1,000 expected picks, which so few picks cannot be
-/// trusted to show: that of independent picks, of a fixed number in all.
-fn rare_variance(truth: &Truth, counts: &[f32], draws: f64) -> f64 {
-    let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
-    for (f, &c) in truth.lights().iter().zip(counts) {
-        let c = f64::from(c);
-        if *f > 0.0 && (FREQUENT..PLENTY).contains(&(c * draws)) && c < 0.5 {
-            squares += f * f / c;
-            sum += f;
-            count += c;
+/// The lights whose part of the estimate is nearly normal after all draws, and that part's moments in a call.
+struct Steady {
+    lights: Vec<bool>,
+    moments: (f64, f64),
+}
+
+/// Leaves out lights, those with the greatest single hits first, until the mean of all draws is no longer lopsided.
+fn steady(truth: &Truth, counts: &[f32], draws: f64) -> Steady {
+    let f = truth.lights();
+    // A light of no chance at all is for the coverage check; a listed one never varies.
+    let mut order: Vec<usize> = (0..f.len()).filter(|&i| counts[i] > 0.0 && counts[i] < 0.5).collect();
+    let hit = |i: usize| f[i] / f64::from(counts[i]);
+    order.sort_by(|&a, &b| hit(b).total_cmp(&hit(a)));
+    let total: f64 = order.iter().map(|&i| f64::from(counts[i])).sum();
+    let mut lights = vec![true; f.len()];
+    let mut left_out = 0;
+    loop {
+        let kept = &order[left_out..];
+        let mean = kept.iter().map(|&i| f[i]).sum::<f64>() / total;
+        let gone: f64 = order[..left_out].iter().map(|&i| f64::from(counts[i])).sum();
+        // Picks of lights that are left out add 0.
+        let (mut variance, mut third) = (gone * mean * mean, -gone * mean * mean * mean);
+        for &i in kept {
+            let (count, off) = (f64::from(counts[i]), hit(i) - mean);
+            variance += count * off * off;
+            third += count * off * off * off;
         }
+        // Variance below rounding, as where lights are chosen by exactly what they add, is none.
+        let flat = variance <= 1e-10 * mean * mean * total;
+        if kept.is_empty() || flat || third.abs() <= SKEWNESS * variance.powf(1.5) * draws.sqrt() {
+            let moments = if kept.is_empty() || flat { (0.0, 0.0) } else { (variance, third) };
+            return Steady { lights, moments };
+        }
+        // A thirty-second at a time keeps this near linear in the lights.
+        let step = (kept.len() / 32).max(1);
+        order[left_out..left_out + step].iter().for_each(|&i| lights[i] = false);
+        left_out += step;
     }
-    if count > 0.0 { (squares - sum * sum / count).max(0.0) } else { 0.0 }
 }
