@@ -44,7 +44,11 @@ fn a_box_throws_the_moons_shadow_and_the_moon_shines_beside_it() {
         let mut parts = ground(50.0, vec![moon(Vec3::new(1.0, 0.0, 1.0), 1.0)]);
         parts.surfaces.extend(cuboid(Vec3::new(2.0, -2.0, 0.0), Vec3::new(4.0, 2.0, 5.0)));
         let stage = stage_with(parts, LeaveOut::Yes, offset);
-        assert_eq!(radiance(&stage, Vec3::ZERO, Vec3::Z, 0), 0.0, "{name}: 2 m west of a box 5 m high is in its shadow");
+        assert_eq!(
+            radiance(&stage, Vec3::ZERO, Vec3::Z, 0),
+            0.0,
+            "{name}: 2 m west of a box 5 m high is in its shadow"
+        );
         assert!(radiance(&stage, Vec3::new(6.0, 0.0, 0.0), Vec3::Z, 0) > 0.0, "{name}: its east side is lit");
     }
 }
@@ -89,7 +93,10 @@ fn a_triangle_gives_what_lamberts_polygon_formula_says() {
 
 #[test]
 fn a_triangle_is_dark_from_behind() {
-    let light = Shape::Triangle { corners: [Vec3::Z * 3.0, Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)], radiance: Vec3::ONE };
+    let light = Shape::Triangle {
+        corners: [Vec3::Z * 3.0, Vec3::new(1.0, 0.0, 3.0), Vec3::new(0.0, 1.0, 3.0)],
+        radiance: Vec3::ONE,
+    };
     let stage = stage(ground(10.0, vec![light]));
     assert_eq!(radiance(&stage, Vec3::new(0.2, 0.2, 0.0), Vec3::Z, 100), 0.0);
 }

@@ -54,7 +54,8 @@ fn one_thread_and_two_give_the_same_bytes() {
         let name = entry.info().name;
         let sampler = sampler(name, &stage);
         let mut alone = Film::new(stage.receivers().len());
-        let plan = Plan { stage: &stage, receivers: stage.receivers(), sampler: &*sampler, key: RunKey { seed: 9, run: 2 } };
+        let plan =
+            Plan { stage: &stage, receivers: stage.receivers(), sampler: &*sampler, key: RunKey { seed: 9, run: 2 } };
         plan.run(5, &mut alone);
         for threads in [1, 2] {
             assert_eq!(bits(&film(name, &stage, threads).image()), bits(&alone.image()), "{name} on {threads} threads");
@@ -80,7 +81,8 @@ fn useless_among_useful() -> Parts {
 
 /// The inside of a convex, open shape: nothing can stand in the way.
 fn plaza() -> Parts {
-    let mut lights: Vec<_> = (0..30).map(|i| point(Vec3::new(i as f32 - 15.0, (i * 7 % 13) as f32 - 6.0, 4.0), 50.0)).collect();
+    let mut lights: Vec<_> =
+        (0..30).map(|i| point(Vec3::new(i as f32 - 15.0, (i * 7 % 13) as f32 - 6.0, 4.0), 50.0)).collect();
     lights.push(spot(Vec3::new(0.0, 0.0, 7.0), Vec3::NEG_Z, 500.0));
     ground(20.0, lights)
 }

@@ -82,7 +82,9 @@ fn violations(module: &str, file: &str, text: &str) -> Vec<String> {
         .filter(|(_, imported)| imported != module)
         .filter_map(|(line, imported)| match floor(&imported) {
             Some(other) if other < own => None,
-            Some(other) => Some(format!("{file}:{line}: `{module}` (floor {own}) imports `{imported}` (floor {other})")),
+            Some(other) => {
+                Some(format!("{file}:{line}: `{module}` (floor {own}) imports `{imported}` (floor {other})"))
+            }
             None => Some(format!("{file}:{line}: `{imported}` is on no floor")),
         })
         .collect()

@@ -29,9 +29,8 @@ const SHIFTED: u8 = 8;
 const HIDDEN: u8 = 9;
 const BEYOND: u8 = 10;
 
-const NAMES: [&str; 11] = [
-    "right", "heavy", "dropped", "claimed", "scaled", "counts", "allocates", "global", "shifted", "hidden", "beyond",
-];
+const NAMES: [&str; 11] =
+    ["right", "heavy", "dropped", "claimed", "scaled", "counts", "allocates", "global", "shifted", "hidden", "beyond"];
 
 /// A choice by flux with one thing wrong.
 struct Mutant<const KIND: u8>;
@@ -199,6 +198,17 @@ fn a_random_number_scaled_wrongly_fails_weights() {
 #[test]
 fn expected_counts_off_by_a_factor_fail_picks() {
     rejected(COUNTS, &["picks", "reciprocal"], &["coverage", "estimate", "image-mean"]);
+}
+
+#[test]
+fn a_stage_that_leaves_out_too_much_is_found() {
+    let whole = stage(sixteen());
+    let mut needs = whole.needs();
+    needs.occlusion = false;
+    let strategy = parse_from(MUTANTS, "right").expect("a strategy");
+    let checks = verify(&strategy, &whole.with_needs(needs), &Options::default()).expect("a sampler");
+    let replay = checks.iter().find(|check| check.name == "replay").expect("the check");
+    assert!(!replay.passed, "{replay}");
 }
 
 #[test]

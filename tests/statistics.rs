@@ -2,11 +2,11 @@
 
 mod common;
 
-use citylights::strategy::registry::{self, STRATEGIES};
 use citylights::strategy::Claim;
+use citylights::strategy::registry::{self, STRATEGIES};
 use citylights::verify::{Options, Truth, verify};
-use citylights::visibility::stage::{LeaveOut, Stage};
 use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{ground, panel, point, sixteen, spot, stage, stage_with};
 use glam::Vec3;
 
@@ -21,7 +21,8 @@ fn passes(scene: &str, name: &str, stage: &Stage, options: &Options) {
     let text: Vec<String> = checks.iter().map(|check| format!("{name:<16} {check}")).collect();
     println!("{scene}\n{}", text.join("\n"));
     assert!(checks.iter().all(|check| check.passed), "{scene}\n{}", text.join("\n"));
-    let wanted = if matches!(registry::parse(name).expect(name).info().claim, Claim::Biased(_)) { "bias" } else { "image-mean" };
+    let wanted =
+        if matches!(registry::parse(name).expect(name).info().claim, Claim::Biased(_)) { "bias" } else { "image-mean" };
     assert!(checks.iter().any(|check| check.name == wanted), "{name} was not looked at");
 }
 
@@ -31,7 +32,11 @@ fn every_strategy_keeps_its_contract_among_sixteen_lights() {
     for name in ["uniform:picks=4", "power:picks=3", "intensity:picks=2", "influence-tail:picks=2,tail=3,cutoff=255"] {
         passes("sixteen", name, &stage(sixteen()), &Options::default());
     }
-    all_pass("sixteen, nothing left out", &stage_with(sixteen(), LeaveOut::No, Offset::SCALED), &Options { receivers: 8, ..Options::default() });
+    all_pass(
+        "sixteen, nothing left out",
+        &stage_with(sixteen(), LeaveOut::No, Offset::SCALED),
+        &Options { receivers: 8, ..Options::default() },
+    );
 }
 
 #[test]
@@ -70,7 +75,8 @@ fn every_strategy_keeps_its_contract_on_first_night() {
         println!("scenes/first-night.toml is not there yet");
         return;
     }
-    let scene = citylights::scene::recipe::load(&path, &citylights::scene::recipe::Overrides::default()).expect("first-night");
+    let scene =
+        citylights::scene::recipe::load(&path, &citylights::scene::recipe::Overrides::default()).expect("first-night");
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     all_pass("first-night", &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..Options::default() });
 }

@@ -126,7 +126,9 @@ mod tests {
             counts[(u * 4.0) as usize * 4 + (v * 4.0) as usize] += 1;
         }
         // And under one salt, from light to light.
-        (0..16_000).map(|i| scattered(99, i)).for_each(|[u, v]| counts[(u * 4.0) as usize * 4 + (v * 4.0) as usize] += 1);
+        (0..16_000)
+            .map(|i| scattered(99, i))
+            .for_each(|[u, v]| counts[(u * 4.0) as usize * 4 + (v * 4.0) as usize] += 1);
         let chi2: f64 = counts.iter().map(|&c| (f64::from(c) - 2_000.0).powi(2) / 2_000.0).sum();
         assert!(chi2 < 44.3, "chi-squared {chi2}, limit 44.3 (15 degrees of freedom, 1e-4), seed 13");
     }

@@ -172,7 +172,7 @@ pub(super) fn picks(sites: &[Site], options: &Options) -> Check {
         let error = (variance + (ROUNDING * wanted).powi(2)).sqrt();
         let off = site.picks.mean - wanted;
         let t = if off == 0.0 { 0.0 } else { (off / error).abs() };
-        if !(t <= worst.0) {
+        if t.is_nan() || t > worst.0 {
             worst = (t, format!("; worst at pixel {}: {:.5} for {wanted:.5}", site.at.pixel, site.picks.mean));
         }
     }

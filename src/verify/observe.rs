@@ -122,9 +122,9 @@ fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
             let (id, weight) = (pick.light as usize, f64::from(pick.weight));
             seen[id] = true;
             let light = &lights[id];
-            let value = truth.of_delta(pick.light, light.kind()).unwrap_or_else(|| {
-                grey(shadowed(stage, at, light, pick.uv, &mut rays))
-            });
+            let value = truth
+                .of_delta(pick.light, light.kind())
+                .unwrap_or_else(|| grey(shadowed(stage, at, light, pick.uv, &mut rays)));
             sum_whole += weight * value;
             if often(id) {
                 sum_frequent += weight * value;
