@@ -55,15 +55,6 @@ impl Stream {
     }
 }
 
-/// Two numbers in `[0, 1)` that belong to `index` under a random `salt`, whatever else is drawn.
-#[inline]
-pub fn scattered(salt: u64, index: u32) -> [f32; 2] {
-    // The golden-ratio step of SplitMix64 keeps neighbouring indices apart before they are mixed.
-    let bits = mix(salt.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-    let scale = 1.0 / 16_777_216.0;
-    [(bits >> 40) as f32 * scale, ((bits >> 8) & 0xff_ffff) as f32 * scale]
-}
-
 /// What names the streams of one run: everything random in a run follows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunKey {
@@ -115,22 +106,6 @@ mod tests {
                 / f64::from(n);
             assert!(correlation.abs() < 4.0 / f64::from(n).sqrt(), "correlation {correlation} at ({pass}, {pixel})");
         }
-    }
-
-    #[test]
-    fn scattered_points_fill_the_square_evenly() {
-        let mut stream = Stream::keyed(&[13]);
-        let mut counts = [0u32; 16];
-        for i in 0..16_000 {
-            let [u, v] = scattered(stream.bits(), i % 7);
-            counts[(u * 4.0) as usize * 4 + (v * 4.0) as usize] += 1;
-        }
-        // And under one salt, from light to light.
-        (0..16_000)
-            .map(|i| scattered(99, i))
-            .for_each(|[u, v]| counts[(u * 4.0) as usize * 4 + (v * 4.0) as usize] += 1);
-        let chi2: f64 = counts.iter().map(|&c| (f64::from(c) - 2_000.0).powi(2) / 2_000.0).sum();
-        assert!(chi2 < 44.3, "chi-squared {chi2}, limit 44.3 (15 degrees of freedom, 1e-4), seed 13");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::parameters::Arguments;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::error::Result;
-use crate::base::random::{Stream, scattered};
+use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 
@@ -25,38 +25,33 @@ impl Strategy for All {
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Lights> {
-        let stage = context.stage;
-        Ok(Lights { lights: stage.lights().to_vec(), points: stage.needs().has(Kind::Triangle) })
+        let table = context.stage.scene().lights();
+        let extended = |light: LightId| table[light as usize].kind() == Kind::Triangle;
+        Ok(Lights(context.stage.lights().iter().map(|&light| (light, extended(light))).collect()))
     }
 }
 
-/// The lights to take, in table order: sums then come out the same whether or not useless lights were left out.
-pub struct Lights {
-    lights: Vec<LightId>,
-    /// Whether any light has an extent.
-    points: bool,
-}
+/// The lights to take, in table order, and whether each has an extent. Sums come out the same to the last bit whether or
+/// not useless lights were left out: the order is kept, and a light's points depend on nothing but the light and the pass.
+pub struct Lights(Vec<(LightId, bool)>);
 
 impl LightSampler for Lights {
     type Scratch = ();
 
     fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
-        if self.points {
-            // Points that belong to a light and not to its place in the list: they too are then the same whether or
-            // not useless lights were left out.
-            let salt = rng.bits();
-            self.lights.iter().for_each(|&light| out.push_at(light, 1.0, scattered(salt, light)));
-        } else {
-            self.lights.iter().for_each(|&light| out.push(light, 1.0));
+        let call = rng.bits();
+        for &(light, extended) in &self.0 {
+            let uv = if extended { Stream::keyed(&[call, u64::from(light)]).uniform2() } else { [0.0; 2] };
+            out.push_at(light, 1.0, uv);
         }
     }
 
     fn expected_counts(&self, _at: &Receiver, counts: &mut [f32]) -> bool {
-        self.lights.iter().for_each(|&light| counts[light as usize] += 1.0);
+        self.0.iter().for_each(|&(light, _)| counts[light as usize] += 1.0);
         true
     }
 
     fn heap_bytes(&self) -> usize {
-        size_of_val(&self.lights[..])
+        size_of_val(&self.0[..])
     }
 }
