@@ -1,5 +1,7 @@
 //! What every strategy promises exactly: no allocation, no dependence on threads, nothing lost by leaving out.
 
+#![cfg(feature = "measure")]
+
 mod common;
 #[path = "common/counting.rs"]
 mod counting;

@@ -1,5 +1,7 @@
 //! A check that cannot fail proves nothing: wrong strategies, each rejected by the check that is meant for it.
 
+#![cfg(feature = "measure")]
+
 mod common;
 #[path = "common/counting.rs"]
 mod counting;

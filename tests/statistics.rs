@@ -1,5 +1,7 @@
 //! Every registered strategy against its contract, on scenes small and real.
 
+#![cfg(feature = "measure")]
+
 mod common;
 
 use citylights::strategy::Claim;
