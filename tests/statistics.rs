@@ -86,15 +86,27 @@ fn the_truth_per_light_adds_up_to_the_exact_image() {
 }
 
 #[cfg(feature = "recipe")]
+fn shipped(name: &str, options: &Options) {
+    use citylights::scene::recipe::{Overrides, load};
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
+    let scene = load(&path, &Overrides::default()).expect(name);
+    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+    all_pass(name, &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..*options });
+}
+
+#[cfg(feature = "recipe")]
 #[test]
 fn every_strategy_keeps_its_contract_on_first_night() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
-    if !path.exists() {
-        println!("scenes/first-night.toml is not there yet");
-        return;
+    shipped("first-night", &Options::default());
+}
+
+#[cfg(feature = "recipe")]
+#[test]
+#[ignore = "takes a minute; for a change to strategies or to leaving out"]
+fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
+    for name in ["lamps-only", "plaza", "moonlit", "stadium"] {
+        for seed in 1..=3 {
+            shipped(name, &Options { seed, ..Options::default() });
+        }
     }
-    let scene =
-        citylights::scene::recipe::load(&path, &citylights::scene::recipe::Overrides::default()).expect("first-night");
-    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    all_pass("first-night", &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..Options::default() });
 }
