@@ -1,6 +1,6 @@
 //! Does a sampler keep the promises that hold exactly?
 
-use super::observe::{PLENTY, Site};
+use super::observe::{PLENTY, Site, freedom};
 use super::truth::grey;
 use super::weights::ROUNDING;
 use super::{Check, Options, Subject, spread};
@@ -159,7 +159,7 @@ pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -
 
 /// The sum of the expected counts against the mean number of picks, at each receiver.
 pub(super) fn picks(sites: &[Site], options: &Options) -> Check {
-    let freedom = options.batches.max(2) as usize - 1;
+    let freedom = freedom(sites);
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom);
     let mut worst = (0.0f64, String::new());
     for site in sites {

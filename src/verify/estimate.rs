@@ -1,6 +1,6 @@
 //! Is the mean estimate the exact sum?
 
-use super::observe::Site;
+use super::observe::{Site, freedom};
 use super::weights::ROUNDING;
 use super::{Check, Options};
 use crate::base::statistics::{Moments, sidak, student_p, student_quantile};
@@ -94,7 +94,7 @@ pub(super) fn estimate(sites: &[Site], options: &Options) -> [Check; 2] {
     let third = sites.iter().map(model).fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
     let difference = Difference::of(found, Moments { n: repeats, mean: covered, variance: reference }, third);
     let (t, error) = (difference.t(), difference.variance.sqrt());
-    let limit = student_quantile(1.0 - 0.5 * options.level, options.batches.max(2) as usize - 1);
+    let limit = student_quantile(1.0 - 0.5 * options.level, freedom(sites));
     let detail = format!(
         "|t| of the mean over receivers: {:+.4} % off; detectable {:.3} %, seed {}",
         100.0 * (found.mean - covered) / covered.max(1e-30),

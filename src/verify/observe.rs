@@ -14,6 +14,9 @@ const BIN: f64 = 30.0;
 /// the estimate, on both sides of the comparison; the other checks still hold them.
 const SKEWNESS: f64 = 0.25;
 
+/// Batches that a t test needs at least.
+const FEWEST: usize = 30;
+
 /// From so many expected picks on, the variance measured between batches is trusted alone.
 pub(super) const PLENTY: f64 = 1_000.0;
 
@@ -90,10 +93,25 @@ impl Site {
 
 /// Draws at every receiver of the subject.
 pub(super) fn sites(subject: &Subject<'_>) -> Vec<Site> {
-    subject.receivers.iter().map(|at| site(subject, at)).collect()
+    let mut buffer = PickBuffer::default();
+    let mut worker = subject.sampler.worker();
+    let mut picks = |at: &Receiver| {
+        worker.fill(&[*at], 0..8, subject.key(), true, &mut buffer);
+        buffer.len() / 8
+    };
+    let most = subject.receivers.iter().map(&mut picks).max().unwrap_or(0);
+    // A sampler that takes thousands of lights in a call has little left to chance: fewer batches will do.
+    let batches = (subject.options.draws / most.max(1)).clamp(FEWEST, u32::MAX as usize) as u32;
+    let batches = batches.min(subject.options.batches).max(2);
+    subject.receivers.iter().map(|at| site(subject, at, batches)).collect()
 }
 
-fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
+/// Degrees of freedom of what was measured between batches.
+pub(super) fn freedom(sites: &[Site]) -> usize {
+    sites.first().map_or(1, |site| site.batches as usize - 1)
+}
+
+fn site(subject: &Subject<'_>, at: &Receiver, batches: u32) -> Site {
     let (stage, options, key) = (subject.stage, subject.options, subject.key());
     let lights = stage.scene().lights();
     let truth = Truth::new(stage, at, options.points, options.seed);
@@ -104,7 +122,6 @@ fn site(subject: &Subject<'_>, at: &Receiver) -> Site {
     // A first look, to share the draws out: its passes come again below.
     worker.fill(&[*at], 0..8, key, true, &mut buffer);
     let a_call = (buffer.len() as f64 / 8.0).max(1.0);
-    let batches = options.batches.max(2);
     let calls = ((options.draws as f64 / a_call / f64::from(batches)).ceil() as u32).max(1);
     let draws = f64::from(calls) * f64::from(batches);
     let (mut bins, bin_of) = bins(&truth, expected.as_deref(), draws);

@@ -1,6 +1,6 @@
 //! Do the weights of each light sum to 1 on average?
 
-use super::observe::{PLENTY, Site};
+use super::observe::{PLENTY, Site, freedom};
 use super::{Check, Options};
 use crate::base::statistics::{sidak, student_quantile};
 
@@ -18,7 +18,7 @@ pub(super) fn weights(sites: &[Site], options: &Options) -> [Check; 2] {
 
 fn bins(sites: &[Site], options: &Options) -> Check {
     let hypotheses: usize = sites.iter().map(|site| site.bins.len()).sum();
-    let freedom = options.batches.max(2) as usize - 1;
+    let freedom = freedom(sites);
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), freedom);
     let mut worst = (0.0f64, String::new());
     for site in sites {
@@ -62,7 +62,7 @@ fn total(sites: &[Site], options: &Options) -> Check {
         variance += site.excess.variance / site.excess.n as f64;
         count += site.contributing.mean;
     }
-    let limit = student_quantile(1.0 - 0.5 * options.level, options.batches.max(2) as usize - 1);
+    let limit = student_quantile(1.0 - 0.5 * options.level, freedom(sites));
     if count == 0.0 {
         return Check::new(TOTAL, 0.0, limit, "no pick of a light that adds anything".into());
     }
