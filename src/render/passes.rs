@@ -12,6 +12,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
+/// At most this many (receiver, pass) pairs are sampled at once: where lists are short and suddenly long, a buffer stays
+/// within CALLS times the longest.
+const CALLS: usize = 512;
+
 /// What passes are run with.
 #[derive(Clone, Copy)]
 pub struct Plan<'a> {
@@ -98,11 +102,11 @@ impl<'a> Tiles<'a> {
                 kernel(plan.stage, receivers, count, &self.picks, sums, counts);
                 // A sampler that takes thousands of lights gets one receiver and few passes at a time.
                 let a_call = (self.picks.len() / (receivers.len() * count)).max(1);
-                let calls = (PICKS / a_call).max(1);
-                self.size.1 = (calls as u32).min(256);
+                let calls = (PICKS / a_call).clamp(1, CALLS);
+                self.size.1 = calls as u32;
                 pass = passes.end;
                 if pass == block.end {
-                    self.size.0 = (calls / (block.len()).min(256)).clamp(1, TILE);
+                    self.size.0 = (calls / block.len()).clamp(1, TILE);
                 }
             }
             done = tile.end;

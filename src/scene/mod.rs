@@ -124,6 +124,15 @@ impl Scene {
         if surfaces.len() < total {
             notes.push(format!("{} surfaces without area were dropped", total - surfaces.len()));
         }
+        if let Some(group) = groups.iter().find(|g| g.range.start > g.range.end || g.range.end as usize > lights.len())
+        {
+            return Err(Error::Invalid(format!(
+                "light group `{}` is {:?} of {} lights",
+                group.name,
+                group.range,
+                lights.len()
+            )));
+        }
         let mut table = Vec::with_capacity(lights.len());
         let mut kept_before = Vec::with_capacity(lights.len() + 1);
         for (i, shape) in lights.iter().enumerate() {
@@ -269,9 +278,9 @@ fn check_light(index: usize, shape: &Shape) -> Result<()> {
                     "light {index}: a spot's cones need 0 <= inner < outer <= 90 degrees; their cosines are {cos_inner} and {cos_outer}"
                 )));
             }
-            (position.is_finite() && (axis.length() - 1.0).abs() < 1e-3, *intensity)
+            (position.is_finite() && (axis.length() - 1.0).abs() < 1e-5, *intensity)
         }
-        Shape::Directional { towards, irradiance } => ((towards.length() - 1.0).abs() < 1e-3, *irradiance),
+        Shape::Directional { towards, irradiance } => ((towards.length() - 1.0).abs() < 1e-5, *irradiance),
         Shape::Triangle { corners, radiance } => (corners.iter().all(|c| c.is_finite()), *radiance),
     };
     if !finite || !colour.is_finite() || colour.min_element() < 0.0 {
