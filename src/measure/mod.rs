@@ -1,6 +1,6 @@
 //! How far from the truth is each strategy, after how much time?
 //!
-//! One [`Target`](target::Target) a scene holds the receivers and the exact image. A [`Plan`](plan::Plan) says how far
+//! One [`Target`](target::Target) a scene holds the receivers and the exact image. A [`Pilot`](plan::Pilot) says how far
 //! each strategy can go within its budget. [`compare`] runs all of it, interleaved, and hands out rows as they come.
 
 pub mod clock;
