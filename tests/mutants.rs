@@ -192,6 +192,29 @@ fn a_dropped_light_that_is_claimed_fails_weights_and_estimate() {
     rejected(CLAIMED, &["weights", "estimate", "picks"], &["coverage", "reciprocal"]);
 }
 
+#[cfg(feature = "recipe")]
+#[test]
+fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
+    use citylights::scene::recipe::{Overrides, load};
+    use citylights::visibility::offset::Offset;
+    use citylights::visibility::stage::{LeaveOut, Stage};
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
+    let scene = load(&file, &Overrides::default()).expect("a shipped scene");
+    let city = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+    let options = Options { receivers: 16, draws: 10_000, ..Options::default() };
+    for (kind, meant) in [(RIGHT, None), (HEAVY, Some("weights-total")), (DROPPED, Some("coverage"))] {
+        let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
+        let checks = verify(&strategy, &city, &options).expect("a sampler");
+        println!("{}{}", NAMES[kind as usize], print(&checks));
+        match meant {
+            None => assert!(checks.iter().all(|check| check.passed), "{}", print(&checks)),
+            Some(meant) => {
+                assert!(checks.iter().any(|check| check.name == meant && !check.passed), "{meant}{}", print(&checks));
+            }
+        }
+    }
+}
+
 #[test]
 fn a_random_number_scaled_wrongly_fails_weights() {
     rejected(SCALED, &["weights"], &["coverage", "picks", "reciprocal", "same-seed"]);
