@@ -72,8 +72,8 @@ impl Occluders {
     /// Whether nothing lies on the segment.
     #[inline]
     pub fn visible(&self, segment: &Segment) -> bool {
-        let &Segment { origin, direction, t_min, t_max } = segment;
-        self.bvh.ray_traverse_miss(ray(origin, direction, t_min, t_max), |ray, i| self.triangles[i].intersect(ray))
+        let &Segment { origin, along, t_min, t_max } = segment;
+        self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| self.triangles[i].intersect(ray))
     }
 
     /// The first thing on a ray and its distance, which is exact to f32 rounding of the triangle's plane.

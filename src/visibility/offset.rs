@@ -46,31 +46,32 @@ impl Offset {
     /// The ray from a receiver to something `distance` metres away in a unit `direction`; infinite for the moon.
     ///
     /// It is aimed from where it starts. Shifted as a whole instead, it would cross a light's own plane short of its
-    /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/closed_forms.rs`).
+    /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/closed_forms.rs`). Lengths are
+    /// those from the receiver, which differ from those from the origin by the push at most.
     #[inline]
     pub fn segment(&self, at: &Receiver, direction: Vec3, distance: f32) -> Segment {
         let size = at.position.abs().max_element();
         let origin = at.position + at.normal * (self.push + self.push_relative * size);
         if distance == f32::INFINITY {
             // Infinity less a share of infinity is no number, and nothing is nearer than that.
-            return Segment { origin, direction, t_min: self.t_min, t_max: f32::INFINITY };
+            return Segment { origin, along: direction, t_min: self.t_min, t_max: f32::INFINITY };
         }
-        let to_end = direction * distance - (origin - at.position);
-        let distance = to_end.length();
-        let t_max = distance - (self.far + self.far_relative * (size + distance));
-        Segment { origin, direction: to_end / distance, t_min: self.t_min, t_max }
+        let along = direction * distance - (origin - at.position);
+        let shares = 1.0 / distance;
+        let t_max = 1.0 - (self.far + self.far_relative * (size + distance)) * shares;
+        Segment { origin, along, t_min: self.t_min * shares, t_max }
     }
 }
 
-/// A shadow ray: nothing may lie on it within `[t_min, t_max)`.
+/// A shadow ray: nothing may lie on `origin + t along` for `t` within `[t_min, t_max)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it starts.
+    /// Where it starts, in metres.
     pub origin: Vec3,
-    /// Unit vector along it.
-    pub direction: Vec3,
-    /// Hits nearer than this do not count, in metres.
+    /// All the way to its end; a unit vector towards what is infinitely far.
+    pub along: Vec3,
+    /// Hits nearer than this share of the way do not count.
     pub t_min: f32,
-    /// Hits from here on do not count, in metres.
+    /// Hits from this share of the way on do not count.
     pub t_max: f32,
 }
