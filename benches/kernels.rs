@@ -33,6 +33,7 @@ use criterion::{Criterion, SamplingMode, Throughput};
 use glam::Vec3A;
 use obvhs::ray::Ray;
 use std::hint::black_box;
+use std::time::Duration;
 
 /// Lights that each receiver chooses from.
 const CANDIDATES: usize = 16;
@@ -40,7 +41,7 @@ const SCENE: &str = "downtown";
 
 fn main() {
     let stage = common::stage(SCENE);
-    let mut criterion = common::criterion(CPU_TIME);
+    let mut criterion = common::criterion(CPU_TIME).measurement_time(Duration::from_secs(1));
     let segments = segments(&stage);
     shadow_rays(&mut criterion, &stage, &segments);
     influence_query(&mut criterion, &stage);
@@ -106,10 +107,10 @@ fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, segments: &[S
     group.bench_function("bare", |b| common::per_element(b, segments.len(), bare));
     group.finish();
 
-    let mut criterion = common::criterion(RATIO);
+    let mut criterion = common::criterion(RATIO).measurement_time(Duration::from_secs(2));
     let mut group = common::flat(&mut criterion, "shadow-ray-ratio");
     // The bare library's time over ours: a share of its speed.
-    let mut duel = Duel::new(4, || drop(black_box(bare())), || drop(black_box(through_ours())));
+    let mut duel = Duel::new(bare, through_ours);
     duel.bench(&mut group, "bare-over-ours");
     group.finish();
     duel.judge("shadow-ray-ratio/bare-over-ours", &(0.95..=f64::INFINITY));

@@ -27,10 +27,10 @@ pub(crate) struct Reported(&'static dyn ValueFormatter);
 
 /// Thread CPU time: what else runs on the machine counts for less than on the wall's clock.
 pub(crate) const CPU_TIME: Reported = Reported(&Nanoseconds);
-/// Mean squared error.
-pub(crate) const SQUARED_ERROR: Reported = Reported(&SquaredRadiance);
+/// Mean squared error over the squared truth.
+pub(crate) const RELATIVE_ERROR: Reported = Reported(&Plain("relMSE"));
 /// One time over another.
-pub(crate) const RATIO: Reported = Reported(&Times);
+pub(crate) const RATIO: Reported = Reported(&Plain("times"));
 
 impl Measurement for Reported {
     type Intermediate = ();
@@ -76,43 +76,20 @@ impl ValueFormatter for Nanoseconds {
     }
 }
 
-/// Formats squares of radiance: the square's prefix is squared with it, so (mcd/m²)² is 1e-6 (cd/m²)².
-struct SquaredRadiance;
+/// Formats a number without a scale; the word stands where units do.
+struct Plain(&'static str);
 
-impl ValueFormatter for SquaredRadiance {
-    fn scale_values(&self, typical: f64, values: &mut [f64]) -> &'static str {
-        let (factor, unit) = match typical {
-            0.1.. => (1.0, "(cd/m²)²"),
-            1e-7.. => (1e6, "(mcd/m²)²"),
-            _ => (1e12, "(µcd/m²)²"),
-        };
-        values.iter_mut().for_each(|value| *value *= factor);
-        unit
-    }
-
-    fn scale_throughputs(&self, typical: f64, _: &Throughput, values: &mut [f64]) -> &'static str {
-        self.scale_values(typical, values)
-    }
-
-    fn scale_for_machines(&self, _: &mut [f64]) -> &'static str {
-        "(cd/m²)²"
-    }
-}
-
-/// Formats a ratio.
-struct Times;
-
-impl ValueFormatter for Times {
+impl ValueFormatter for Plain {
     fn scale_values(&self, _: f64, _: &mut [f64]) -> &'static str {
-        "times"
+        self.0
     }
 
     fn scale_throughputs(&self, _: f64, _: &Throughput, _: &mut [f64]) -> &'static str {
-        "times"
+        self.0
     }
 
     fn scale_for_machines(&self, _: &mut [f64]) -> &'static str {
-        "times"
+        self.0
     }
 }
 
@@ -158,29 +135,25 @@ pub(crate) fn making<T>(bencher: &mut Bencher<'_, Reported>, mut make: impl FnMu
 
 /// CPU time of one thing over that of another, taken in turns within one run.
 pub(crate) struct Duel<A, B> {
-    /// What is measured.
-    pub(crate) ours: A,
-    /// What it is measured by.
-    pub(crate) other: B,
-    /// Turns a sample.
-    pub(crate) turns: u32,
+    ours: A,
+    other: B,
     samples: Vec<f64>,
 }
 
-impl<A: FnMut(), B: FnMut()> Duel<A, B> {
-    /// Two things that do the same work.
-    pub(crate) fn new(turns: u32, ours: A, other: B) -> Self {
-        Self { ours, other, turns, samples: Vec::new() }
+impl<T, U, A: FnMut() -> T, B: FnMut() -> U> Duel<A, B> {
+    /// Two ways to do the same work.
+    pub(crate) fn new(ours: A, other: B) -> Self {
+        Self { ours, other, samples: Vec::new() }
     }
 
-    /// Runs it as a benchmark. A sample is one sum of CPU times over the other, from `turns` turns whose order
-    /// alternates: what slows the machine down slows both. Ratios do not add up, so a sample does the same however
-    /// many iterations criterion asks for.
+    /// Runs it as a benchmark, two turns an iteration. A sample is one sum of CPU times over the other, from turns whose
+    /// order alternates: what slows the machine down slows both.
     pub(crate) fn bench(&mut self, group: &mut BenchmarkGroup<'_, Reported>, name: &str) {
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|iterations| {
-                let ratio = self.sample();
+                let ratio = self.sample(2 * iterations);
                 self.samples.push(ratio);
+                // Criterion divides by the iterations; a ratio does not add up over them.
                 ratio * iterations as f64
             });
         });
@@ -193,24 +166,26 @@ impl<A: FnMut(), B: FnMut()> Duel<A, B> {
         let moments = Moments::of(samples.iter().copied());
         let verdict = if wanted.contains(&moments.mean) { "kept" } else { "MISSED" };
         let (low, high) = (wanted.start(), wanted.end());
-        eprintln!(
-            "{name}: {:.4} ± {:.4} (95 %); wanted {low} to {high}: {verdict}\n",
-            moments.mean,
-            moments.half_width(0.95)
-        );
+        let half_width = moments.half_width(0.95);
+        eprintln!("{name}: {:.4} ± {half_width:.4} (95 %); wanted {low} to {high}: {verdict}\n", moments.mean);
     }
 
-    fn sample(&mut self) -> f64 {
+    fn sample(&mut self, turns: u64) -> f64 {
         let (mut ours, mut other) = (0.0, 0.0);
-        for turn in 0..self.turns {
+        for turn in 0..turns {
             if turn % 2 == 0 {
-                ours += timed(&mut self.ours).1.cpu;
-                other += timed(&mut self.other).1.cpu;
+                ours += cpu(&mut self.ours);
+                other += cpu(&mut self.other);
             } else {
-                other += timed(&mut self.other).1.cpu;
-                ours += timed(&mut self.ours).1.cpu;
+                other += cpu(&mut self.other);
+                ours += cpu(&mut self.ours);
             }
         }
         ours / other
     }
+}
+
+/// CPU seconds of `work`.
+fn cpu<T>(work: &mut impl FnMut() -> T) -> f64 {
+    timed(|| black_box(work())).1.cpu
 }
