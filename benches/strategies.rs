@@ -3,7 +3,7 @@
 //! `setup/SCENE/STRATEGY` is the CPU time of building a sampler; `sample/SCENE/STRATEGY` that of one receiver in one
 //! pass: choice, shading and shadow rays, on one thread. Every strategy of the registry is here. Receivers are sampled
 //! [`PASSES`] passes at a time, which share what a strategy does once a receiver; a strategy that takes many
-//! lights gets fewer receivers.
+//! lights gets fewer receivers. A set-up under 1 µs is nothing but the clock's own 0.4 µs and an allocation.
 //!
 //! To compare a strategy of one's own: add its line to `strategy::registry`, then `cargo bench --bench strategies`.
 //! To compare a change: `cargo bench --bench strategies -- --save-baseline before`, change it,

@@ -47,7 +47,7 @@ fn main() {
     let mut criterion = common::criterion(RELATIVE_ERROR)
         .sample_size(CYCLE as usize)
         .warm_up_time(Duration::from_nanos(1))
-        .measurement_time(Duration::from_secs(1));
+        .measurement_time(Duration::from_secs(5));
     let entries = entries(std::env::var_os("CITYLIGHTS_BENCH_MUTANT").is_some());
     SCENES.into_iter().for_each(|scene| bench(&mut criterion, scene, &entries));
     criterion.final_summary();
