@@ -1,6 +1,6 @@
 //! How fast are the parts that every strategy stands on?
 //!
-//! All on `downtown`, on one thread, in CPU time. What is wanted, and asked for again in `judge`d lines on stderr:
+//! All on `downtown`, on one thread, in CPU time. What is wanted (the ratio is judged on stderr):
 //!
 //! | benchmark | of what | wanted |
 //! |---|---|---|
