@@ -27,10 +27,10 @@ use citylights::shading::importance::importance;
 use citylights::strategy::BuildContext;
 use citylights::strategy::registry::parse;
 use citylights::visibility::influence::InfluenceTree;
+use citylights::visibility::offset::Segment;
 use citylights::visibility::stage::Stage;
 use common::{CPU_TIME, Duel, RATIO, Reported};
 use criterion::{Criterion, SamplingMode, Throughput};
-use glam::Vec3A;
 use obvhs::ray::Ray;
 use std::hint::black_box;
 use std::time::Duration;
@@ -42,8 +42,8 @@ const SCENE: &str = "downtown";
 fn main() {
     let stage = common::stage(SCENE);
     let mut criterion = common::criterion(CPU_TIME).measurement_time(Duration::from_secs(1));
-    let segments = segments(&stage);
-    shadow_rays(&mut criterion, &stage, &segments);
+    let questions = questions(&stage);
+    shadow_rays(&mut criterion, &stage, &questions);
     influence_query(&mut criterion, &stage);
     alias_draw(&mut criterion, &stage);
     power_without_ray(&mut criterion, stage);
@@ -51,15 +51,15 @@ fn main() {
 }
 
 /// A shadow ray to come: from a receiver, over a direction and a distance.
-struct Segment {
+struct Question {
     from: Receiver,
     to: Arrival,
 }
 
-/// One segment a receiver, to a light that resampling would choose: candidates by chance, one of them by importance.
+/// One ray a receiver, to a light that resampling would choose: candidates by chance, one of them by importance.
 ///
 /// Source: Talbot, Cline, Egbert, EGSR 2005.
-fn segments(stage: &Stage) -> Vec<Segment> {
+fn questions(stage: &Stage) -> Vec<Question> {
     let table = stage.scene().lights();
     let choose = |at: &Receiver| {
         let mut rng = Stream::keyed(&[1, u64::from(at.pixel)]);
@@ -73,25 +73,21 @@ fn segments(stage: &Stage) -> Vec<Segment> {
             }
         }
         let to = contribution::<0b1111>(chosen?, rng.uniform2(), at).ok()?;
-        Some(Segment { from: *at, to })
+        Some(Question { from: *at, to })
     };
     stage.receivers().iter().filter_map(choose).collect()
 }
 
-fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, segments: &[Segment]) {
+fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[Question]) {
     let (bvh, triangles) = stage.occluders().parts();
-    let through_ours = || {
-        let visible = |segment: &&Segment| {
-            let (origin, t_min, t_max) = stage.offset().segment(&segment.from, segment.to.distance);
-            stage.occluders().visible(origin, segment.to.direction, t_min, t_max)
-        };
-        segments.iter().filter(visible).count()
-    };
-    let rays: Vec<Ray> = segments
+    let segment =
+        |question: &Question| stage.offset().segment(&question.from, question.to.direction, question.to.distance);
+    let through_ours = || questions.iter().filter(|question| stage.occluders().visible(&segment(question))).count();
+    let rays: Vec<Ray> = questions
         .iter()
-        .map(|segment| {
-            let (origin, t_min, t_max) = stage.offset().segment(&segment.from, segment.to.distance);
-            Ray::new(origin.into(), Vec3A::from(segment.to.direction), t_min, t_max)
+        .map(|question| {
+            let Segment { origin, direction, t_min, t_max } = segment(question);
+            Ray::new(origin.into(), direction.into(), t_min, t_max)
         })
         .collect();
     let bare = || {
@@ -99,12 +95,12 @@ fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, segments: &[S
         rays.iter().filter(visible).count()
     };
     let (seen, seen_bare) = (through_ours(), bare());
-    eprintln!("{} shadow rays, {} unblocked ({} by the bare library)\n", segments.len(), seen, seen_bare);
+    eprintln!("{} shadow rays, {} unblocked ({} by the bare library)\n", questions.len(), seen, seen_bare);
 
     let mut group = criterion.benchmark_group("shadow-ray");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(1));
-    group.bench_function("ours", |b| common::per_element(b, segments.len(), through_ours));
-    group.bench_function("bare", |b| common::per_element(b, segments.len(), bare));
+    group.bench_function("ours", |b| common::per_element(b, questions.len(), through_ours));
+    group.bench_function("bare", |b| common::per_element(b, questions.len(), bare));
     group.finish();
 
     let mut criterion = common::criterion(RATIO).measurement_time(Duration::from_secs(2));

@@ -97,8 +97,8 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
                         continue;
                     };
                     if BLOCKED {
-                        let (origin, t_min, t_max) = stage.offset().segment(at, arrival.distance);
-                        if !stage.occluders().visible(origin, arrival.direction, t_min, t_max) {
+                        let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+                        if !stage.occluders().visible(&segment) {
                             continue;
                         }
                     }

@@ -1,5 +1,7 @@
 //! Many-light strategies on night cities, measured: error against run time.
 
+#![forbid(unsafe_code)]
+
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -15,4 +17,6 @@ pub mod report;
 pub mod scene;
 pub mod shading;
 pub mod strategy;
+#[cfg(feature = "measure")]
+pub mod verify;
 pub mod visibility;

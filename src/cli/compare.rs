@@ -29,9 +29,10 @@ pub(super) struct Arguments {
     /// The strategies, with parameters if any: uniform,influence-pick:picks=4; all by default
     #[arg(long, short, value_name = "A,B")]
     strategies: Option<String>,
-    /// Most passes of a strategy in a run; budgets double up to it
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
-    budget: u32,
+    /// Most passes of a strategy in a run; budgets double up to it. By default 64, and more for a strategy that needs
+    /// them to see a bias of 5 % in the image's mean
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    budget: Option<u32>,
     /// Most CPU seconds of a strategy in a run
     #[arg(long, value_name = "S", default_value = "2", value_parser = seconds)]
     seconds: f64,
@@ -134,7 +135,11 @@ impl Session {
     ) -> anyhow::Result<()> {
         let options = Options {
             strategies,
-            budget: Budget { passes: arguments.budget, seconds: arguments.seconds },
+            budget: Budget {
+                usual_passes: arguments.budget.unwrap_or(64),
+                most_passes: arguments.budget.unwrap_or(1 << 20),
+                seconds: arguments.seconds,
+            },
             repeats: arguments.repeats,
             seed: arguments.seed,
             threads: threads as usize,
@@ -153,8 +158,10 @@ impl Session {
             })?;
         self.record.scenes.push(scene);
         write_run(&self.folder, &self.record)?;
-        if let Some(scene) = self.record.scenes.last() {
-            print(&format!("{}\n", table(&self.record, scene, &rows)))?;
+        // This scene is finished, even where others are still to come.
+        let record = RunRecord { finished: true, ..self.record.clone() };
+        if let Some(scene) = record.scenes.last() {
+            print(&format!("{}\n", table(&record, scene, &rows)))?;
         }
         Ok(())
     }

@@ -160,7 +160,7 @@ fn ladder(
         .filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name() && row.error.is_none());
     match (so_far.map(|row| row.passes).max(), pilot) {
         (Some(most), _) => (0..31).map(|rung| 1 << rung).take_while(|&passes| passes <= most).collect(),
-        (None, Some(pilot)) => pilot.ladder(options.budget),
+        (None, Some(pilot)) => pilot.ladder(options.budget, options.repeats),
         (None, None) => Vec::new(),
     }
 }

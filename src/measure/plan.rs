@@ -6,6 +6,7 @@
 use super::clock::timed;
 use super::errors::Truth;
 use super::target::Target;
+use crate::base::colour::luminance;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::render::counts::Counts;
@@ -17,8 +18,10 @@ use crate::strategy::registry::Configured;
 /// What one strategy may spend in one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Most passes.
-    pub passes: u32,
+    /// Passes that suffice if they make the image's mean certain enough to see a bias of [`DETECTABLE`] in it.
+    pub usual_passes: u32,
+    /// Most passes, if they do not.
+    pub most_passes: u32,
     /// Most CPU seconds of sampling.
     pub seconds: f64,
 }
@@ -34,12 +37,17 @@ pub struct Pilot {
     variance: f64,
     /// relMSE that stays.
     bias2: f64,
+    /// Relative variance of the image's mean luminance, times passes.
+    energy_variance: f64,
     /// What became of the samples.
     pub counts: Counts,
 }
 
 /// Receivers of a pilot.
 pub(super) const RECEIVERS: usize = 512;
+
+/// A bias of the image's mean that runs should be able to see.
+pub const DETECTABLE: f64 = 0.05;
 
 /// Passes of a pilot.
 const PASSES: u32 = 4;
@@ -71,21 +79,32 @@ impl Pilot {
             (first[i].as_dvec3() - r) * (second[i].as_dvec3() - r) * truth.weight(i)
         };
         let bias2 = truth.mean_over(both).max(0.0);
+        let mean = |value: &dyn Fn(usize) -> f64| (0..first.len()).map(value).sum::<f64>() / first.len().max(1) as f64;
+        let energy = mean(&|i| f64::from(luminance(truth.mean()[i])));
+        let of_pixel = f64::from(PASSES) * mean(&|i| f64::from(luminance(first[i] - second[i])).powi(2) / 2.0);
+        // Receivers are independent of one another: their mean has an n-th of their variance.
+        let energy_variance = if energy > 0.0 { of_pixel / (all as f64 * energy * energy) } else { 0.0 };
         let counts = plan(3).run_counting(PASSES, &mut Film::new(few.receivers.len()));
         Ok(Self {
             arrive_s: (one - pass_s).max(0.0),
             pass_s,
             variance: (errors - bias2).max(0.0) * f64::from(PASSES),
             bias2,
+            energy_variance,
             counts,
         })
     }
 
     /// The budgets that fit, in passes: 1, 2, 4 and so on; none if one pass is too long.
-    pub fn ladder(&self, budget: Budget) -> Vec<u32> {
+    pub fn ladder(&self, budget: Budget, runs: u32) -> Vec<u32> {
+        // 3 standard errors: Student's 97.5 % and 80 % points at 15 degrees of freedom; twice the variance, since a
+        // pilot mostly misses the rare bright picks.
+        let certain = 2.0 * self.energy_variance * (3.0 / DETECTABLE).powi(2) / f64::from(runs);
+        let certain = (certain.min(1e9) as u32).next_power_of_two();
+        let passes = certain.clamp(budget.usual_passes, budget.most_passes);
         let seconds = |rung: u32| f64::from(rung + 1) * self.arrive_s + f64::from(1u32 << rung) * self.pass_s;
         (0..31)
-            .take_while(|&rung| 1 << rung <= budget.passes && seconds(rung) <= budget.seconds)
+            .take_while(|&rung| 1 << rung <= passes && seconds(rung) <= budget.seconds)
             .map(|rung| 1 << rung)
             .collect()
     }
@@ -107,10 +126,27 @@ mod tests {
 
     #[test]
     fn ladders_double_within_passes_and_seconds() {
-        let pilot = Pilot { arrive_s: 0.1, pass_s: 0.1, variance: 1.0, bias2: 0.0, counts: Counts::default() };
-        assert_eq!(pilot.ladder(Budget { passes: 20, seconds: 100.0 }), [1, 2, 4, 8, 16]);
+        let pilot = Pilot {
+            arrive_s: 0.1,
+            pass_s: 0.1,
+            variance: 1.0,
+            bias2: 0.0,
+            energy_variance: 0.0,
+            counts: Counts::default(),
+        };
+        assert_eq!(pilot.ladder(Budget { usual_passes: 20, most_passes: 20, seconds: 100.0 }, 16), [1, 2, 4, 8, 16]);
         // 8 passes in 4 blocks take 0.4 + 0.8 s.
-        assert_eq!(pilot.ladder(Budget { passes: 64, seconds: 1.25 }), [1, 2, 4, 8]);
-        assert!(pilot.ladder(Budget { passes: 64, seconds: 0.1 }).is_empty());
+        assert_eq!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 1.25 }, 16), [1, 2, 4, 8]);
+        assert!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 0.1 }, 16).is_empty());
+        // A relative variance of 0.45 a pass, with 16 runs: 2 * 0.45 * 3600 / 16 = 202 passes are needed.
+        let noisy = Pilot { arrive_s: 0.0, pass_s: 1e-3, energy_variance: 0.45, ..pilot };
+        assert_eq!(
+            noisy.ladder(Budget { usual_passes: 64, most_passes: 1 << 20, seconds: 1.0 }, 16).last(),
+            Some(&256)
+        );
+        assert_eq!(
+            noisy.ladder(Budget { usual_passes: 64, most_passes: 1 << 20, seconds: 0.15 }, 16).last(),
+            Some(&128)
+        );
     }
 }

@@ -82,7 +82,6 @@ fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut 
 pub fn shadowed(stage: &Stage, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
     let Ok(arrival) = contribution::<0b1111>(light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
-    let (origin, t_min, t_max) = stage.offset().segment(at, arrival.distance);
-    let visible = stage.occluders().visible(origin, arrival.direction, t_min, t_max);
-    if visible { arrival.radiance.as_dvec3() } else { DVec3::ZERO }
+    let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+    if stage.occluders().visible(&segment) { arrival.radiance.as_dvec3() } else { DVec3::ZERO }
 }

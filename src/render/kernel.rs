@@ -87,8 +87,8 @@ fn shade_pick<const KINDS: u8, const OCCLUSION: bool, const COUNTING: bool>(
         }
     };
     if OCCLUSION {
-        let (origin, t_min, t_max) = stage.offset().segment(at, arrival.distance);
-        let visible = stage.occluders().visible(origin, arrival.direction, t_min, t_max);
+        let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+        let visible = stage.occluders().visible(&segment);
         if COUNTING {
             counts.shadow_rays += 1;
             counts.blocked += u64::from(!visible);

@@ -78,8 +78,10 @@ impl Influence {
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let radius = self.radius2.sqrt();
         // A half ball reaches `radius` on the axis' side and the rim of its flat face on the other.
-        let rim = (Vec3::ONE - self.axis * self.axis).max(Vec3::ZERO);
-        let rim = Vec3::new(rim.x.sqrt(), rim.y.sqrt(), rim.z.sqrt());
+        // From the other two components: 1 - x^2 has no digits left where x is nearly 1, and the box would miss 3 cm
+        // of a ball of 100 m.
+        let Vec3 { x, y, z } = self.axis;
+        let rim = Vec3::new(y.hypot(z), z.hypot(x), x.hypot(y));
         let full = self.axis == Vec3::ZERO;
         let reach = |sign: f32| {
             let towards = self.axis * sign;
@@ -93,6 +95,15 @@ impl Influence {
 mod tests {
     use super::*;
     use crate::base::random::Stream;
+
+    #[test]
+    fn bounds_hold_the_rim_of_a_nearly_upright_half() {
+        let volume = Influence { centre: Vec3::ZERO, radius2: 1e4, axis: Vec3::new(1.0, 3e-4, 0.0) };
+        let rim = Vec3::new(-0.02, 99.9, 0.0);
+        assert!(volume.contains(rim));
+        let (low, high) = volume.bounds();
+        assert!(rim.cmpge(low).all() && rim.cmple(high).all(), "{rim} outside {low}..{high}");
+    }
 
     #[test]
     fn bounds_hold_every_point_of_the_volume() {

@@ -101,9 +101,9 @@ impl Scene {
         if lights.len() >= u32::MAX as usize || surfaces.len() >= u32::MAX as usize / 2 {
             return Err(Error::Invalid("a scene holds at most 2^31 lights and 2^31 surfaces".into()));
         }
-        if surfaces.is_empty() {
+        if !origin.is_finite() || ev100.is_some_and(|ev| !ev.is_finite()) {
             return Err(Error::Invalid(format!(
-                "scene `{name}` has no surfaces: nothing could be lit; add a ground, a box or a city"
+                "scene `{name}` needs a finite origin and EV100, not {origin} and {ev100:?}"
             )));
         }
         for (i, surface) in surfaces.iter().enumerate() {
@@ -116,6 +116,11 @@ impl Scene {
         }
         let total = surfaces.len();
         let surfaces: Vec<Surface> = surfaces.into_iter().filter(|s| has_area(s.corners)).collect();
+        if surfaces.is_empty() {
+            return Err(Error::Invalid(format!(
+                "scene `{name}` has no surfaces with an area: nothing could be lit; add a ground, a box or a city"
+            )));
+        }
         if surfaces.len() < total {
             notes.push(format!("{} surfaces without area were dropped", total - surfaces.len()));
         }

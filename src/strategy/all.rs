@@ -4,7 +4,7 @@ use super::parameters::Arguments;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::scene::light::LightId;
+use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 
 /// Takes every light in every pass, one point each: exact after one pass where lights have no extent.
@@ -25,24 +25,29 @@ impl Strategy for All {
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Lights> {
-        Ok(Lights(context.stage.lights().to_vec()))
+        let table = context.stage.scene().lights();
+        let extended = |light: LightId| table[light as usize].kind() == Kind::Triangle;
+        Ok(Lights(context.stage.lights().iter().map(|&light| (light, extended(light))).collect()))
     }
 }
 
-/// The lights to take, in table order: sums then come out the same whether or not useless lights were left out.
-pub struct Lights(Vec<LightId>);
+/// The lights to take, in table order, and whether each has an extent. Sums come out the same to the last bit whether or
+/// not useless lights were left out: the order is kept, and a light's points depend on nothing but the light and the pass.
+pub struct Lights(Vec<(LightId, bool)>);
 
 impl LightSampler for Lights {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, _rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
-        for &light in &self.0 {
-            out.push(light, 1.0);
+    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
+        let call = rng.bits();
+        for &(light, extended) in &self.0 {
+            let uv = if extended { Stream::keyed(&[call, u64::from(light)]).uniform2() } else { [0.0; 2] };
+            out.push_at(light, 1.0, uv);
         }
     }
 
     fn expected_counts(&self, _at: &Receiver, counts: &mut [f32]) -> bool {
-        self.0.iter().for_each(|&light| counts[light as usize] += 1.0);
+        self.0.iter().for_each(|&(light, _)| counts[light as usize] += 1.0);
         true
     }
 

@@ -1,22 +1,26 @@
 //! The combination made unbiased: lights out of range keep an exactly accounted chance.
 //!
-//! Besides the weighted picks among the lights in range, `tail` draws by flux over all lights. One that turns out to be
-//! in range is dropped, since the first part already stands for it; any other is weighted by its own probability. So
-//! each light is covered by exactly one of the two parts, and the sum of both is the whole.
+//! Besides the weighted picks among the lights in range, `tail` draws over all lights. One that turns out to be in range
+//! is dropped, since the first part already stands for it; any other is weighted by its own probability. So each light is
+//! covered by exactly one of the two parts, and the sum of both is the whole.
+//!
+//! The draws go by the influence radius r, not by flux (r^2). Out of range a light adds `T (r/d)^2`; over receivers spread
+//! in a plane the mean of its square is in proportion to r^2, so that the probability of least variance is in proportion
+//! to r: the second moment is `(sum r)^2` against `n sum r^2` for flux, the more so the more unequal the lights are.
 
 use super::influence::Range;
 use super::parameters::Arguments;
-use super::power::ByPower;
+use super::power::Aliased;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, influence_pick};
 use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::scene::Scene;
 use crate::scene::influence::Cutoff;
-use crate::scene::light::LightId;
+use crate::scene::light::{Light, LightId};
 use crate::scene::receiver::Receiver;
 use std::sync::Arc;
 
-/// `picks` weighted draws in range and `tail` draws by flux out of it.
+/// `picks` weighted draws in range and `tail` draws by influence radius out of it.
 pub struct InfluenceTail {
     range: Range,
     picks: u32,
@@ -26,7 +30,7 @@ pub struct InfluenceTail {
 impl Strategy for InfluenceTail {
     const INFO: Info = Info {
         name: "influence-tail",
-        summary: "influence-pick made unbiased: lights out of range are drawn by flux",
+        summary: "influence-pick made unbiased: lights out of range are drawn by their radius",
         source: "this project",
         claim: Claim::Unbiased,
         role: Role::Choosing,
@@ -43,7 +47,10 @@ impl Strategy for InfluenceTail {
         let scene = Arc::clone(context.stage.scene());
         let cutoff = self.range.cutoff(&scene);
         let near = influence_pick::Sampler::new(context, &self.range, self.picks);
-        Ok(Sampler { near, far: ByPower::new(context.stage)?, scene, cutoff, tail: self.tail })
+        // A directional light is in range everywhere and never drawn here.
+        let radius = |light: &Light| cutoff.volume(light).map_or(0.0, |volume| volume.radius2.sqrt());
+        let far = Aliased::new(context.stage, radius)?;
+        Ok(Sampler { near, far, scene, cutoff, tail: self.tail })
     }
 }
 
@@ -51,7 +58,7 @@ impl Strategy for InfluenceTail {
 pub struct Sampler {
     scene: Arc<Scene>,
     near: influence_pick::Sampler,
-    far: ByPower,
+    far: Aliased,
     cutoff: Cutoff,
     tail: u32,
 }

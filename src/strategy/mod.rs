@@ -64,6 +64,13 @@ impl<'a> Picks<'a> {
         debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
         self.list.push(Pick { light, weight, uv: Pick::DRAW });
     }
+
+    /// Picks a point of a light; `uv` in `[0, 1)^2`.
+    #[inline]
+    pub fn push_at(&mut self, light: LightId, weight: f32, uv: [f32; 2]) {
+        debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
+        self.list.push(Pick { light, weight, uv });
+    }
 }
 
 /// What a strategy promises.

@@ -6,7 +6,7 @@ use crate::base::colour::luminance;
 use crate::base::discrete::AliasTable;
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::scene::light::LightId;
+use crate::scene::light::{Light, LightId};
 use crate::scene::receiver::Receiver;
 use crate::visibility::stage::Stage;
 
@@ -30,24 +30,25 @@ impl Strategy for Power {
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
-        Ok(Sampler { lights: ByPower::new(context.stage)?, picks: self.picks })
+        let radius = context.stage.scene().radius();
+        let lights = Aliased::new(context.stage, |light| luminance(light.flux(radius)))?;
+        Ok(Sampler { lights, picks: self.picks })
     }
 }
 
-/// The lights of a stage with an alias table over their flux.
-pub(super) struct ByPower {
+/// Lights with an alias table over fixed weights.
+pub(super) struct Aliased {
     lights: Vec<LightId>,
-    /// `None` where no light has any flux.
+    /// `None` where no light has any weight.
     table: Option<AliasTable>,
 }
 
-impl ByPower {
-    pub(super) fn new(stage: &Stage) -> Result<Self> {
-        let scene = stage.scene();
-        let radius = scene.radius();
+impl Aliased {
+    /// The lights of a stage, each with the weight that `weight` gives it.
+    pub(super) fn new(stage: &Stage, weight: impl Fn(&Light) -> f32) -> Result<Self> {
         let lights = stage.lights().to_vec();
-        let flux = |&id: &LightId| f64::from(luminance(scene.lights()[id as usize].flux(radius)));
-        let weights: Vec<f64> = lights.iter().map(flux).collect();
+        let table = stage.scene().lights();
+        let weights: Vec<f64> = lights.iter().map(|&id| f64::from(weight(&table[id as usize]))).collect();
         let table = weights.iter().any(|&w| w > 0.0).then(|| AliasTable::new(&weights)).transpose()?;
         Ok(Self { lights, table })
     }
@@ -73,7 +74,7 @@ impl ByPower {
 
 /// [`Power`] for a scene.
 pub struct Sampler {
-    lights: ByPower,
+    lights: Aliased,
     picks: u32,
 }
 

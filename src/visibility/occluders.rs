@@ -3,6 +3,7 @@
 //! Surfaces and emissive triangles, both from both sides, in one `obvhs` hierarchy of binary nodes.
 
 use super::bvh::{self, Asked};
+use super::offset::Segment;
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
 use glam::{DVec3, Vec3, Vec3A};
@@ -68,9 +69,10 @@ impl Occluders {
         (&self.bvh, &self.triangles)
     }
 
-    /// Whether nothing lies on the ray within `[t_min, t_max)`; `direction` is a unit vector.
+    /// Whether nothing lies on the segment.
     #[inline]
-    pub fn visible(&self, origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> bool {
+    pub fn visible(&self, segment: &Segment) -> bool {
+        let &Segment { origin, direction, t_min, t_max } = segment;
         self.bvh.ray_traverse_miss(ray(origin, direction, t_min, t_max), |ray, i| self.triangles[i].intersect(ray))
     }
 

@@ -43,11 +43,34 @@ impl Offset {
         Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, policy)| *policy)
     }
 
-    /// Origin, least and greatest distance of the ray from a receiver to something `distance` metres away.
+    /// The ray from a receiver to something `distance` metres away in a unit `direction`; infinite for the moon.
+    ///
+    /// It is aimed from where it starts. Shifted as a whole instead, it would cross a light's own plane short of its
+    /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/closed_forms.rs`).
     #[inline]
-    pub fn segment(&self, at: &Receiver, distance: f32) -> (Vec3, f32, f32) {
+    pub fn segment(&self, at: &Receiver, direction: Vec3, distance: f32) -> Segment {
         let size = at.position.abs().max_element();
         let origin = at.position + at.normal * (self.push + self.push_relative * size);
-        (origin, self.t_min, distance - (self.far + self.far_relative * (size + distance)))
+        if distance == f32::INFINITY {
+            // Infinity less a share of infinity is no number, and nothing is nearer than that.
+            return Segment { origin, direction, t_min: self.t_min, t_max: f32::INFINITY };
+        }
+        let to_end = direction * distance - (origin - at.position);
+        let distance = to_end.length();
+        let t_max = distance - (self.far + self.far_relative * (size + distance));
+        Segment { origin, direction: to_end / distance, t_min: self.t_min, t_max }
     }
+}
+
+/// A shadow ray: nothing may lie on it within `[t_min, t_max)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit vector along it.
+    pub direction: Vec3,
+    /// Hits nearer than this do not count, in metres.
+    pub t_min: f32,
+    /// Hits from here on do not count, in metres.
+    pub t_max: f32,
 }

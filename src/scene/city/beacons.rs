@@ -1,7 +1,7 @@
 //! Which buildings warn aircraft?
 
 use crate::base::error::Result;
-use crate::scene::city::buildings::Town;
+use crate::scene::city::buildings::{Building, Town};
 use crate::scene::city::plan::{Fields, Plan};
 use crate::scene::city::round;
 use crate::scene::light::Shape;
@@ -31,7 +31,7 @@ impl Plan for Beacons {
 
 pub(super) fn place(plan: &Beacons, town: &Town) -> Vec<Shape> {
     let intensity = round::light(Vec3::new(1.0, 0.03, 0.02), plan.intensity);
-    let roofs = town.blocks.iter().flat_map(|block| &block.buildings).map(|building| building.top());
+    let roofs = town.blocks.iter().flat_map(|block| &block.buildings).map(Building::top);
     let tall = roofs.filter(|roof| roof.high.z >= plan.from);
     tall.map(|roof| {
         let position = round::position((0.5 * (roof.low + roof.high)).with_z(roof.high.z + 2.0));

@@ -53,10 +53,10 @@ impl Default for Buildings {
 impl Plan for Buildings {
     fn visit(&mut self, f: &mut dyn Fields) -> Result<()> {
         f.number("height", &mut self.height, 5.0..=300.0, "metres")?;
-        f.number("spread", &mut self.spread, 0.0..=2.0, "natural-logarithm units")?;
+        f.number("spread", &mut self.spread, 0.0..=2.0, "standard deviation of the natural logarithm")?;
         f.number("tallest", &mut self.tallest, 8.0..=900.0, "metres")?;
         f.number("lot", &mut self.lot, 12.0..=100.0, "metres")?;
-        f.number("gaps", &mut self.gaps, 0.0..=1.0, "of all lots")
+        f.number("gaps", &mut self.gaps, 0.0..=1.0, "share of all lots")
     }
 }
 

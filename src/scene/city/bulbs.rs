@@ -33,7 +33,7 @@ pub struct Bulbs {
 
 impl Default for Bulbs {
     fn default() -> Self {
-        Self { row: 8.0, spacing: 1.0, height: 6.0, sag: 1.5, flux: 25.0, kelvin: 2_400.0 }
+        Self { row: 20.0, spacing: 2.0, height: 6.0, sag: 1.5, flux: 25.0, kelvin: 2_400.0 }
     }
 }
 

@@ -34,9 +34,9 @@ impl Default for Floodlights {
 
 impl Plan for Floodlights {
     fn visit(&mut self, f: &mut dyn Fields) -> Result<()> {
-        f.number("per_km2", &mut self.per_km2, 0.0..=1_000.0, "lights")?;
+        f.number("per_km2", &mut self.per_km2, 0.0..=1_000.0, "lights on a square kilometre")?;
         f.span("flux", &mut self.flux, 1.0..=1e8, "lumens")?;
-        f.number("exponent", &mut self.exponent, 0.1..=10.0, "natural-logarithm units")?;
+        f.number("exponent", &mut self.exponent, 0.1..=10.0, "exponent of the Pareto law")?;
         f.number("kelvin", &mut self.kelvin, 1_700.0..=15_000.0, "kelvin")
     }
 }

@@ -54,7 +54,7 @@ impl Default for Lamps {
             height: 9.0,
             arm: 1.5,
             flux: [5_000.0, 9_000.0],
-            kelvin: [2_000.0, 4_000.0],
+            kelvin: [2_200.0, 4_000.0],
             inner: 30.0,
             outer: 75.0,
             two_rows_from: 18.0,
@@ -94,7 +94,8 @@ fn rows(plan: &Lamps, street: &Street, seed: u64) -> Vec<Shape> {
     let arm = round::metres(plan.arm.min(0.5 * street.width()));
     let other = if staggered { round::metres((first + 0.5 * spacing) % spacing) } else { first };
     let mut rows = vec![(street.low + arm, first), (street.high - arm, other)];
-    if street.width() < plan.two_rows_from {
+    // Two arms that reach the middle would put lamp on lamp.
+    if street.width() < plan.two_rows_from.max(2.0 * arm + 1.0) {
         rows.swap_remove(stream.below(2));
     }
     let z = round::metres(plan.height);

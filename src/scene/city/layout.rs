@@ -91,16 +91,16 @@ pub(super) struct Street {
     pub(super) number: u64,
     /// Whether it runs along y.
     pub(super) along_y: bool,
-    /// Its kerbs, across.
+    /// The coordinate of one kerb, across the street, in m.
     pub(super) low: f64,
-    /// The other kerb.
+    /// That of the other kerb; greater.
     pub(super) high: f64,
-    /// Its ends, along.
+    /// The coordinates of its ends, along it, in m.
     pub(super) ends: [f64; 2],
 }
 
 impl Street {
-    /// The place `along` the street, `across` it (both as coordinates).
+    /// The point with these coordinates along and across the street.
     pub(super) fn place(&self, along: f64, across: f64) -> DVec2 {
         if self.along_y { DVec2::new(across, along) } else { DVec2::new(along, across) }
     }

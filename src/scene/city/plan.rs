@@ -111,7 +111,7 @@ impl Plan for City {
         f.span("block", &mut self.block, 40.0..=400.0, "metres")?;
         f.span("street", &mut self.street, 6.0..=80.0, "metres")?;
         f.number("pavement", &mut self.pavement, 1.0..=10.0, "metres")?;
-        f.number("squares", &mut self.squares, 0.0..=1.0, "of all blocks")?;
+        f.number("squares", &mut self.squares, 0.0..=1.0, "share of all blocks")?;
         part(f, "buildings", &mut self.buildings)?;
         part(f, "lamps", &mut self.lamps)?;
         part(f, "windows", &mut self.windows)?;
@@ -274,12 +274,12 @@ impl Fields for Check {
 
 /// What is right for a number, in words.
 pub(crate) fn number_wanted(allowed: &RangeInclusive<f64>, unit: &str) -> String {
-    format!("a number within {} and {} is asked for, in {unit}", allowed.start(), allowed.end())
+    format!("a number within {} and {} is asked for ({unit})", allowed.start(), allowed.end())
 }
 
 /// What is right for two numbers, in words.
 pub(crate) fn span_wanted(allowed: &RangeInclusive<f64>, unit: &str) -> String {
-    format!("[least, greatest] within {} and {} is asked for, in {unit}", allowed.start(), allowed.end())
+    format!("[least, greatest] within {} and {} is asked for ({unit})", allowed.start(), allowed.end())
 }
 
 /// What is right for a whole number, in words.

@@ -35,7 +35,7 @@ impl Default for Shops {
 
 impl Plan for Shops {
     fn visit(&mut self, f: &mut dyn Fields) -> Result<()> {
-        f.number("per_100m", &mut self.per_100m, 0.0..=40.0, "panes")?;
+        f.number("per_100m", &mut self.per_100m, 0.0..=40.0, "panes on 100 m of facade")?;
         f.number("width", &mut self.width, 0.5..=20.0, "metres")?;
         f.span("radiance", &mut self.radiance, 0.01..=1e5, "cd/m^2")?;
         f.span("kelvin", &mut self.kelvin, 1_700.0..=15_000.0, "kelvin")

@@ -48,9 +48,9 @@ impl Default for Signs {
 
 impl Plan for Signs {
     fn visit(&mut self, f: &mut dyn Fields) -> Result<()> {
-        f.number("per_100m", &mut self.per_100m, 0.0..=40.0, "signs")?;
-        f.number("blades", &mut self.blades, 0.0..=1.0, "of all signs")?;
-        f.number("boards", &mut self.boards, 0.0..=1.0, "of all signs")?;
+        f.number("per_100m", &mut self.per_100m, 0.0..=40.0, "signs on 100 m of facade")?;
+        f.number("blades", &mut self.blades, 0.0..=1.0, "share of all signs")?;
+        f.number("boards", &mut self.boards, 0.0..=1.0, "share of all signs")?;
         f.span("radiance", &mut self.radiance, 0.01..=1e5, "cd/m^2")
     }
 }

@@ -35,7 +35,7 @@ impl Default for Traffic {
 
 impl Plan for Traffic {
     fn visit(&mut self, f: &mut dyn Fields) -> Result<()> {
-        f.number("per_km", &mut self.per_km, 0.0..=150.0, "cars")?;
+        f.number("per_km", &mut self.per_km, 0.0..=150.0, "cars on a kilometre of street")?;
         f.number("headlight", &mut self.headlight, 1.0..=1e5, "lumens")?;
         f.number("tail_light", &mut self.tail_light, 0.01..=1e4, "candelas")
     }

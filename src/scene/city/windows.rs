@@ -7,7 +7,7 @@
 use crate::base::colour::black_body;
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::scene::city::buildings::{Building, FLOOR, GROUND_FLOOR, Tier, Town};
+use crate::scene::city::buildings::{Building, FLOOR, GROUND_FLOOR, Town};
 use crate::scene::city::facade::Wall;
 use crate::scene::city::plan::{Fields, Plan};
 use crate::scene::city::{Tag, round};
@@ -52,7 +52,7 @@ impl Plan for Windows {
         f.number("height", &mut self.height, 0.2..=2.2, "metres")?;
         f.span("radiance", &mut self.radiance, 0.01..=1e5, "cd/m^2")?;
         f.span("kelvin", &mut self.kelvin, 1_700.0..=15_000.0, "kelvin")?;
-        f.number("offices", &mut self.offices, 0.0..=1.0, "of all buildings")
+        f.number("offices", &mut self.offices, 0.0..=1.0, "share of all buildings")
     }
 }
 
@@ -100,9 +100,8 @@ struct Grid {
 
 impl Grid {
     fn of(plan: &Windows, building: &Building, tier: usize) -> Self {
-        let tier: &Tier = &building.tiers[tier];
-        let on_ground = std::ptr::eq(tier, building.base());
-        let below = if on_ground { GROUND_FLOOR } else { 0.0 };
+        let below = if tier == 0 { GROUND_FLOOR } else { 0.0 };
+        let tier = &building.tiers[tier];
         let walls = tier.walls().map(|wall| (wall, ((wall.width - 1.0) / plan.pitch).floor().max(0.0) as u64));
         Self {
             walls: walls.collect(),

@@ -9,17 +9,17 @@
 //! |---|---|
 //! | top level | `name`, `version = 1`, `seed` (1), `ev100` (none: exposure 1), `origin` (`[0, 0, 0]`, f64) |
 //! | `[camera]` | `position`, `target`, `fov` (60, vertical), `resolution` (`[240, 135]`) |
-//! | `[city]` | [`City`](crate::scene::city::City), with a table per part |
+//! | `[city]` | [`City`], with a table per part |
 //! | `[ground]` | `size` (one number or `[x, y]`), `centre` (`[0, 0]`), `height` (0), `material` |
 //! | `[materials.NAME]` | `albedo`, `street` (false); the names of a city's materials are known already |
 //! | `[[box]]` | `low`, `high`, `material` |
 //! | `[[quad]]`, `[[triangle]]` | `corners`, `material` |
 //! | `[[light]]` | `kind`, and [by kind](lights) |
-//! | `[[bulbs]]` | [`Bulbs`](crate::scene::city::bulbs::Bulbs), `size`, `centre` (`[0, 0]`), `ground` (0) |
+//! | `[[bulbs]]` | [`Bulbs`], `size`, `centre` (`[0, 0]`), `ground` (0) |
 //!
 //! Everything is relative to `origin`, the recipe's frame: moving it changes [`Scene::origin`] and no other byte.
 
-mod lights;
+pub mod lights;
 mod surfaces;
 mod table;
 

@@ -8,6 +8,9 @@ use crate::scene::recipe::{FARTHEST, inside, near};
 use crate::scene::{Material, Surface};
 use glam::DVec3;
 
+/// Materials are found by going through all of them: with more, a large file would take minutes.
+const MOST_MATERIALS: usize = 1_000;
+
 /// Surfaces in the recipe's frame, in f64.
 pub(super) struct Surfaces {
     triangles: Vec<([DVec3; 3], u32)>,
@@ -21,6 +24,11 @@ impl Surfaces {
         let materials = city.map(|city| city.materials.clone()).unwrap_or_default();
         let mut out = Self { triangles: Vec::new(), boxes: Vec::new(), materials };
         if let Some(table) = top.table("materials")? {
+            let count = table.keys().count();
+            if count > MOST_MATERIALS {
+                let text = format!("{count} materials are given; at most {MOST_MATERIALS} are allowed");
+                return Err(top.wrong("materials", text));
+            }
             for name in table.keys() {
                 out.read_material(name, &table.needed_table(name)?)?;
             }

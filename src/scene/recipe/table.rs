@@ -320,11 +320,11 @@ fn list<const N: usize>(value: &DeValue, allowed: &RangeInclusive<f64>) -> Optio
 
 fn not_numbers<const N: usize>(value: &DeValue, allowed: &RangeInclusive<f64>, unit: &str) -> String {
     let (low, high) = (allowed.start(), allowed.end());
-    format!("{} is given; {N} numbers within {low} and {high} are asked for, in {unit}", given(value))
+    format!("{} is given; {N} numbers within {low} and {high} are asked for ({unit})", given(value))
 }
 
 fn number_asked(allowed: &RangeInclusive<f64>, unit: &str) -> String {
-    format!("a number within {} and {} in {unit}", allowed.start(), allowed.end())
+    format!("a number within {} and {} ({unit})", allowed.start(), allowed.end())
 }
 
 /// What stands in the file, in few words.

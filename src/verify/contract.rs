@@ -1,0 +1,189 @@
+//! Does a sampler keep the promises that hold exactly?
+
+use super::observe::{PLENTY, Site, freedom};
+use super::truth::grey;
+use super::weights::ROUNDING;
+use super::{Check, Options, Subject, spread};
+use crate::base::statistics::{sidak, student_quantile};
+use crate::render::exact::shadowed;
+use crate::render::film::Film;
+use crate::render::passes::Plan;
+use crate::scene::receiver::Receiver;
+use crate::strategy::Pick;
+use crate::strategy::erased::PickBuffer;
+use glam::DVec3;
+
+/// The checks' names.
+pub(super) const IDS: &str = "ids";
+const VALID: &str = "weights-finite";
+const SEED: &str = "same-seed";
+const THREADS: &str = "threads";
+const REPLAY: &str = "replay";
+const ALLOCATION: &str = "allocation";
+const PICKS: &str = "picks";
+const RECIPROCAL: &str = "reciprocal";
+
+/// Passes that are looked at.
+const PASSES: u32 = 8;
+
+/// How many picks name no light of a scene with so many.
+pub fn picks_in_range(picks: &[Pick], lights: usize) -> usize {
+    picks.iter().filter(|pick| pick.light as usize >= lights).count()
+}
+
+/// How many picks have a weight that is negative or not finite.
+pub fn picks_valid(picks: &[Pick]) -> usize {
+    picks.iter().filter(|pick| !(pick.weight.is_finite() && pick.weight >= 0.0)).count()
+}
+
+/// The checks that need no statistics.
+pub(super) fn exact(subject: &Subject<'_>) -> Vec<Check> {
+    let mut checks = vec![ids_and_weights(subject)];
+    if checks[0].iter().any(|check| !check.passed && check.name == IDS) {
+        return checks.remove(0);
+    }
+    checks.push(vec![same_seed(subject), threads(subject), replay(subject)]);
+    if let Some(counter) = subject.options.allocations {
+        checks.push(vec![allocation(subject, counter)]);
+    }
+    checks.into_iter().flatten().collect()
+}
+
+fn ids_and_weights(subject: &Subject<'_>) -> Vec<Check> {
+    let buffer = filled(subject, subject.receivers);
+    let picks: Vec<Pick> = buffer.calls().flatten().copied().collect();
+    let lights = subject.stage.scene().lights().len();
+    let of = format!("of {} picks at {} receivers", picks.len(), subject.receivers.len());
+    vec![
+        Check::new(IDS, picks_in_range(&picks, lights) as f64, 0.0, format!("ids beyond the {lights} lights, {of}")),
+        Check::new(VALID, picks_valid(&picks) as f64, 0.0, format!("weights below 0 or not finite, {of}")),
+    ]
+}
+
+fn filled(subject: &Subject<'_>, receivers: &[Receiver]) -> PickBuffer {
+    let mut buffer = PickBuffer::default();
+    subject.sampler.worker().fill(receivers, 0..PASSES, subject.key(), true, &mut buffer);
+    buffer
+}
+
+fn list(buffer: &PickBuffer) -> Vec<Vec<Pick>> {
+    buffer.calls().map(<[Pick]>::to_vec).collect()
+}
+
+/// The same picks again from a new worker, from one that comes the other way round, and pass by pass.
+fn same_seed(subject: &Subject<'_>) -> Check {
+    let first = list(&filled(subject, subject.receivers));
+    let again = list(&filled(subject, subject.receivers));
+    let mut differ = first.iter().zip(&again).filter(|(a, b)| a != b).count();
+    let backwards: Vec<Receiver> = subject.receivers.iter().rev().copied().collect();
+    let back = list(&filled(subject, &backwards));
+    let chunks = || first.chunks(PASSES as usize);
+    differ += chunks().zip(back.rchunks(PASSES as usize)).filter(|(a, b)| a != b).count();
+    let (mut worker, mut buffer) = (subject.sampler.worker(), PickBuffer::default());
+    for (at, calls) in subject.receivers.iter().zip(chunks()) {
+        for (pass, call) in (0..PASSES).zip(calls) {
+            worker.fill(&[*at], pass..pass + 1, subject.key(), true, &mut buffer);
+            differ += usize::from(buffer.calls().next() != Some(&call[..]));
+        }
+    }
+    let detail = format!("calls that differ when repeated, reversed or cut into passes; seed {}", subject.options.seed);
+    Check::new(SEED, differ as f64, 0.0, detail)
+}
+
+/// One thread, two threads and a split of the passes: the same bytes.
+fn threads(subject: &Subject<'_>) -> Check {
+    // More than one tile of 64.
+    let receivers = spread(subject.stage.receivers(), 160);
+    let plan = Plan { stage: subject.stage, receivers: &receivers, sampler: subject.sampler, key: subject.key() };
+    let film = |run: &dyn Fn(&mut Film)| {
+        let mut film = Film::new(receivers.len());
+        run(&mut film);
+        film
+    };
+    let one = film(&|film| plan.run(3, film));
+    let split = film(&|film| {
+        plan.run(1, film);
+        plan.run(2, film);
+    });
+    let current = film(&|film| plan.run_parallel(3, film));
+    let mut differ = usize::from(one != split) + usize::from(one != current);
+    match rayon::ThreadPoolBuilder::new().num_threads(2).build() {
+        Ok(pool) => differ += usize::from(one != pool.install(|| film(&|film| plan.run_parallel(3, film)))),
+        Err(_) => differ += 1,
+    }
+    Check::new(THREADS, differ as f64, 0.0, "films that differ with threads or with a split of the passes, of 3".into())
+}
+
+/// The renderer's film against the same picks shaded one by one, every kind compiled in and every ray cast.
+fn replay(subject: &Subject<'_>) -> Check {
+    let plan =
+        Plan { stage: subject.stage, receivers: subject.receivers, sampler: subject.sampler, key: subject.key() };
+    let mut film = Film::new(subject.receivers.len());
+    plan.run(PASSES, &mut film);
+    let buffer = filled(subject, subject.receivers);
+    let mut calls = buffer.calls();
+    let lights = subject.stage.scene().lights();
+    let mut rays = 0;
+    let mut worst = 0.0f64;
+    for (at, shown) in subject.receivers.iter().zip(film.image()) {
+        let mut sum = DVec3::ZERO;
+        for pick in calls.by_ref().take(PASSES as usize).flatten() {
+            let light = &lights[pick.light as usize];
+            sum += shadowed(subject.stage, at, light, pick.uv, &mut rays) * f64::from(pick.weight);
+        }
+        let (wanted, found) = (grey(sum / f64::from(PASSES)), grey(shown.as_dvec3()));
+        worst = worst.max((found - wanted).abs() / wanted.max(f64::MIN_POSITIVE));
+    }
+    Check::new(REPLAY, worst, 1e-6, "greatest relative difference of the film from its picks shaded singly".into())
+}
+
+/// Allocations of a warm worker, by a counter of this thread's allocations.
+fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
+    let found = allocations(counter, || {
+        let (mut worker, mut buffer) = (subject.sampler.worker(), PickBuffer::default());
+        move || worker.fill(subject.receivers, 0..PASSES, subject.key(), true, &mut buffer)
+    });
+    let calls = subject.receivers.len() * PASSES as usize;
+    Check::new(ALLOCATION, found as f64, 0.0, format!("allocations of a warm worker in {calls} calls"))
+}
+
+/// Allocations that a piece of work makes when it is done again.
+pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -> u64 {
+    let mut work = make();
+    work();
+    work();
+    let before = counter();
+    work();
+    counter() - before
+}
+
+/// The sum of the expected counts against the mean number of picks, at each receiver.
+pub(super) fn picks(sites: &[Site], options: &Options) -> Check {
+    let freedom = freedom(sites);
+    let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom);
+    let mut worst = (0.0f64, String::new());
+    for site in sites {
+        let Some(counts) = &site.expected else { continue };
+        let wanted: f64 = counts.iter().map(|&c| f64::from(c)).sum();
+        let mut variance = site.picks.variance / site.picks.n as f64;
+        if wanted * site.draws() < PLENTY {
+            variance = variance.max(wanted / site.draws());
+        }
+        let error = (variance + (ROUNDING * wanted).powi(2)).sqrt();
+        let off = site.picks.mean - wanted;
+        let t = if off == 0.0 { 0.0 } else { (off / error).abs() };
+        if t.is_nan() || t > worst.0 {
+            worst = (t, format!("; worst at pixel {}: {:.5} for {wanted:.5}", site.at.pixel, site.picks.mean));
+        }
+    }
+    let detail = format!("greatest |t| of mean picks against expected ones, seed {}{}", options.seed, worst.1);
+    Check::new(PICKS, worst.0, limit, detail)
+}
+
+/// Each pick's weight against the reciprocal of its expected count, as independent picks have it.
+pub(super) fn reciprocal(sites: &[Site]) -> Check {
+    let worst = sites.iter().map(|site| site.worst_reciprocal).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
+    let detail = format!("greatest |weight x expected count - 1| of a pick; light {}", worst.1);
+    // f32 counts and weights; an entry of 10^-10 of a cumulative sum in f64 keeps five digits.
+    Check::new(RECIPROCAL, worst.0, 1e-4, detail)
+}

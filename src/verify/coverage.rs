@@ -1,0 +1,36 @@
+//! Can every light that adds something be chosen?
+
+use super::Check;
+use super::observe::Site;
+
+/// The check's name.
+const COVERAGE: &str = "coverage";
+
+/// Where expected counts cannot be told, a light with this share of the radiance must have been seen.
+const NOTICEABLE: f64 = 0.01;
+
+/// Counts the lights that add something at a receiver and have no chance there.
+pub(super) fn coverage(sites: &[Site]) -> Check {
+    let mut missing = 0u64;
+    let mut hypotheses = 0u64;
+    let mut first = None;
+    for site in sites {
+        let total = site.truth.total();
+        for (light, value) in site.truth.lights().iter().enumerate().filter(|(i, _)| site.truth.adds(*i)) {
+            hypotheses += 1;
+            let covered = match &site.expected {
+                Some(counts) => counts[light] > 0.0,
+                None => site.seen[light] || *value < NOTICEABLE * total,
+            };
+            if !covered {
+                missing += 1;
+                first.get_or_insert((light, site.at.pixel, value / total));
+            }
+        }
+    }
+    let place = first.map_or_else(String::new, |(light, pixel, share)| {
+        format!("; light {light} is {:.3} % of the radiance at pixel {pixel} and has no chance there", share * 100.0)
+    });
+    let detail = format!("lights that add something and cannot be chosen, of {hypotheses}{place}");
+    Check::new(COVERAGE, missing as f64, 0.0, detail)
+}

@@ -1,0 +1,91 @@
+//! What does each light really add at a receiver?
+
+use crate::base::colour::luminance;
+use crate::base::random::Stream;
+use crate::base::statistics::Moments;
+use crate::render::exact::shadowed;
+use crate::scene::light::Kind;
+use crate::scene::receiver::Receiver;
+use crate::shading::importance::importance;
+use crate::visibility::stage::Stage;
+use glam::DVec3;
+
+/// Independent repetitions of the stratified points on triangles.
+const REPEATS: usize = 8;
+
+/// The radiance that each light of a scene adds at one receiver, as luminance in cd/m^2.
+pub struct Truth {
+    delta: Vec<f64>,
+    /// Of the triangles, by light; `delta` holds 0 there.
+    triangles: Vec<(u32, [f64; REPEATS])>,
+    mean: Vec<f64>,
+}
+
+impl Truth {
+    /// Evaluates every light of the scene, whatever the stage leaves out, with `points` points shared out among
+    /// triangles in each of 8 repetitions, on top of one a light.
+    pub fn new(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Self {
+        let lights = stage.scene().lights();
+        let mut rays = 0;
+        let mut evaluate = |light, uv| grey(shadowed(stage, at, light, uv, &mut rays));
+        let all = || lights.iter().zip(0u32..).filter(|(light, _)| light.kind() == Kind::Triangle);
+        let total: f64 = all().map(|(light, _)| f64::from(importance(light, at))).sum();
+        let mut mean = vec![0.0; lights.len()];
+        for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
+            *value = evaluate(light, [0.0; 2]);
+        }
+        let delta = mean.clone();
+        let mut triangles = Vec::new();
+        for (light, id) in all() {
+            let share = f64::from(importance(light, at)) / total.max(f64::MIN_POSITIVE);
+            let side = (f64::from(points) * share).sqrt() as u32 + 1;
+            let mut rng = Stream::keyed(&[seed, u64::from(at.pixel), u64::from(id), u64::from_le_bytes(*b"thetruth")]);
+            let values: [f64; REPEATS] = std::array::from_fn(|_| {
+                let cell = |i: u32, u: f32| ((i as f32 + u) / side as f32).min(1.0 - f32::EPSILON);
+                let points = (0..side * side).map(|i| {
+                    let [u, v] = rng.uniform2();
+                    evaluate(light, [cell(i % side, u), cell(i / side, v)])
+                });
+                points.sum::<f64>() / f64::from(side * side)
+            });
+            mean[id as usize] = values.iter().sum::<f64>() / REPEATS as f64;
+            triangles.push((id, values));
+        }
+        Self { delta, triangles, mean }
+    }
+
+    /// What each light adds.
+    pub fn lights(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// What all lights add.
+    pub fn total(&self) -> f64 {
+        self.mean.iter().sum()
+    }
+
+    /// Whether a light adds anything that f32 can tell from nothing beside the rest.
+    pub fn adds(&self, light: usize) -> bool {
+        self.mean[light] > 1e-8 * self.total()
+    }
+
+    /// What a light without extent adds; `None` for a triangle, where it depends on the point.
+    pub(super) fn of_delta(&self, light: u32, kind: Kind) -> Option<f64> {
+        (kind != Kind::Triangle).then(|| self.delta[light as usize])
+    }
+
+    /// Sum over the lights that are `wanted`, from each of the repetitions.
+    pub(super) fn sum(&self, wanted: impl Fn(usize) -> bool) -> Moments {
+        let fixed: f64 = self.delta.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, value)| value).sum();
+        let mut repeats = [fixed; REPEATS];
+        for (_, values) in self.triangles.iter().filter(|(id, _)| wanted(*id as usize)) {
+            repeats.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+        Moments::of(repeats)
+    }
+}
+
+/// Luminance in f64. A weight is one number for all channels, so one number tells all.
+pub(super) fn grey(rgb: DVec3) -> f64 {
+    f64::from(luminance(rgb.as_vec3()))
+}

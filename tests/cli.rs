@@ -1,0 +1,217 @@
+//! Promise: the command line says what is wrong, loses nothing, and gives the same bytes however it is run.
+#![cfg(feature = "cli")]
+
+use assert_cmd::Command;
+use predicates::prelude::*;
+use predicates::str::contains;
+use std::path::{Path, PathBuf};
+
+fn citylights() -> Command {
+    Command::cargo_bin("citylights").expect("the binary")
+}
+
+/// The arguments, split at blanks, fail with exit code 2 and a message that holds all of `said`.
+fn refused(arguments: &str, said: &[&str]) {
+    let assert = citylights().args(arguments.split(' ')).assert().code(2).stdout("");
+    said.iter().fold(assert, |assert, text| assert.stderr(contains(*text)));
+}
+
+/// A small recipe in a folder of its own.
+fn recipe(folder: &Path, text: &str) -> PathBuf {
+    let file = folder.join("scene.toml");
+    std::fs::write(&file, text).expect("written");
+    file
+}
+
+const LAMP: &str = r#"
+name = "lamp"
+seed = 1
+version = 1
+ev100 = 3.0
+
+[camera]
+position = [0.0, -8.0, 3.0]
+target = [0.0, 0.0, 0.0]
+fov = 50
+resolution = [32, 18]
+
+[ground]
+size = 100
+material = "paving"
+
+[materials.paving]
+albedo = [0.3, 0.3, 0.3]
+street = true
+
+[[box]]
+low = [1.0, 0.0, 0.0]
+high = [2.0, 1.0, 2.0]
+material = "paving"
+
+[[light]]
+kind = "point"
+position = [0.0, 0.0, 6.0]
+intensity = 100
+
+[[light]]
+kind = "point"
+position = [4.0, 2.0, 5.0]
+intensity = 60
+"#;
+
+#[test]
+fn unknown_names_are_refused_with_near_ones() {
+    refused("render scenes/lamps-only.toml -s influense -o x.png", &["influense", "influence"]);
+    refused("render scenes/lamps-only.toml -s power:pick=2 -o x.png", &["power:pick", "picks"]);
+    refused("render scenes/lamps-only.toml -s power:picks=0 -o x.png", &["picks", "1 to 1024"]);
+    refused("render scenes/lamps-only.toml --offset tmin -o x.png", &["tmin", "t-min"]);
+    refused("compare scenes/lamps-only.toml --strategies power,power", &["power", "twice"]);
+}
+
+#[test]
+fn impossible_outputs_are_refused_before_the_work() {
+    refused("render scenes/megacity.toml -o picture.jpg", &["picture.jpg", ".png or .exr"]);
+    refused("render scenes/megacity.toml -o no/such/folder/x.png", &["no/such/folder"]);
+    refused("reference scenes/megacity.toml -o no/such/folder/x.exr", &["no/such/folder"]);
+}
+
+#[test]
+fn missing_scenes_and_wrong_numbers_are_refused() {
+    refused("inspect scenes/nowhere.toml", &["scenes/nowhere.toml"]);
+    refused("render scenes/lamps-only.toml --resolution 0x9 -o x.png", &["0x9"]);
+    refused("render scenes/lamps-only.toml --ev100 NaN -o x.png", &["NaN"]);
+    refused("compare scenes/lamps-only.toml --seconds 0", &["above 0"]);
+    refused("compare scenes/lamps-only.toml --repeats 0", &["1..="]);
+}
+
+#[test]
+fn a_mistake_in_the_last_scene_costs_no_measuring() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let file = recipe(folder.path(), &LAMP.replace("fov = 50", "fof = 50"));
+    let mut command = citylights();
+    command.args(["compare", "scenes/lamps-only.toml"]).arg(&file).arg("--out").arg(&out);
+    command.assert().code(2).stderr(contains("scene.toml:10").and(contains("fof")).and(contains("fov")));
+    assert!(!out.exists(), "a result folder was made");
+}
+
+#[test]
+fn no_lights_is_a_black_image_and_a_warning() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP.split("[[light]]").next().expect("a head"));
+    let out = folder.path().join("dark.exr");
+    for strategy in ["null", "all", "uniform", "power", "intensity", "influence", "influence-pick", "influence-tail"] {
+        let mut command = citylights();
+        command.arg("render").arg(&file).args(["-s", strategy, "--spp", "2", "-o"]).arg(&out);
+        command.assert().success().stderr(contains("no lights"));
+        let picture = citylights::image::exr::read(&out).expect("a picture");
+        assert!(picture.pixels.iter().all(|p| *p == [0.0; 3]), "{strategy}");
+    }
+    let mut command = citylights();
+    command.arg("compare").arg(&file).args(["--repeats", "3", "--budget", "2", "--out"]).arg(folder.path().join("out"));
+    command.assert().success().stdout(contains("exact"));
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads_or_leaving_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let render = |scene: &str, more: &[&str], name: &str| {
+        let mut command = citylights();
+        command.args(["render", scene, "--resolution", "48x27", "-o"]).arg(file(name)).args(more).assert().success();
+        std::fs::read(file(name)).expect("a picture")
+    };
+    let first = "scenes/first-night.toml";
+    let one = render(first, &["--spp", "4", "--threads", "1"], "one.exr");
+    assert!(one == render(first, &["--spp", "4", "--threads", "2"], "two.exr"), "threads change the picture");
+    for scene in [first, "scenes/lamps-only.toml", "scenes/plaza.toml", "scenes/moonlit.toml"] {
+        let all = ["-s", "all", "--spp", "1", "--leave-out"];
+        let on = render(scene, &[&all[..], &["on"]].concat(), "on.exr");
+        assert!(on == render(scene, &[&all[..], &["off"]].concat(), "off.exr"), "leaving out changes {scene}");
+    }
+}
+
+#[test]
+fn one_pixel_can_be_replayed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let mut command = citylights();
+    command.arg("render").arg(&file).args(["-s", "power", "--spp", "3", "--pixel", "16,14"]);
+    command.assert().success().stdout(contains("pass 2:"));
+    let mut command = citylights();
+    command.arg("render").arg(&file).args(["--pixel", "32,0"]).assert().code(2).stderr(contains("outside"));
+}
+
+#[test]
+fn lists_and_inspections_are_json_on_demand() {
+    for arguments in ["list strategies --json", "list scenes --json", "inspect scenes/first-night.toml --json"] {
+        let output = citylights().args(arguments.split(' ')).output().expect("it runs");
+        let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert!(value.is_array() || value["kinds"].is_array(), "{arguments}");
+    }
+}
+
+#[test]
+fn a_comparison_leaves_rows_tables_and_plots_that_reports_agree_with() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let out = folder.path().join("out");
+    let compare = || {
+        let mut command = citylights();
+        command.arg("compare").arg(&file).args(["--repeats", "4", "--budget", "8", "--cache"]);
+        command.arg(folder.path().join("cache")).arg("--out").arg(&out);
+        command
+    };
+    compare().assert().success().stdout(contains("influence-tail").and(contains("exact")));
+    for name in ["run.json", "runs.csv", "lamp.md", "lamp.svg"] {
+        assert!(out.join(name).is_file(), "{name} is missing");
+    }
+    assert!(!out.join("films").exists());
+    citylights().arg("report").arg(&out).arg("--check").assert().success();
+    compare().assert().code(2).stderr(contains("never overwritten"));
+    std::fs::write(out.join("lamp.md"), "edited").expect("written");
+    citylights().arg("report").arg(&out).arg("--check").assert().code(1).stdout(contains("lamp.md"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_comparison_keeps_its_rows_and_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let out = folder.path().join("out");
+    let arguments = |repeats: &str| {
+        let mut arguments = vec!["compare".to_owned(), file.display().to_string()];
+        for more in ["--strategies", "uniform,all", "--budget", "64", "--repeats", repeats, "--threads", "1", "--out"] {
+            arguments.push(more.to_owned());
+        }
+        arguments.push(out.display().to_string());
+        arguments.push("--cache".to_owned());
+        arguments.push(folder.path().join("cache").display().to_string());
+        arguments
+    };
+    let rows = || std::fs::read_to_string(out.join("runs.csv")).map_or(0, |text| text.lines().count());
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("citylights"))
+        .args(arguments("300"))
+        .stderr(std::process::Stdio::null())
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("it starts");
+    let patience = std::time::Instant::now();
+    while rows() < 20 && patience.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    let status = child.wait().expect("it ends");
+    assert_eq!(status.code(), Some(130), "it ended before it was interrupted");
+    let kept = rows();
+    assert!(kept >= 20);
+    citylights().args(arguments("300")).assert().success();
+    let text = std::fs::read_to_string(out.join("runs.csv")).expect("rows");
+    let mut seen = std::collections::HashSet::new();
+    for line in text.lines().skip(1) {
+        let key: Vec<&str> = line.split(',').take(4).collect();
+        seen.insert(key.join(","));
+    }
+    assert!(seen.len() > kept, "{} rows after {kept}", seen.len());
+    assert_eq!(seen.len() % 300, 0, "each run has all its budgets: {}", seen.len());
+}

@@ -1,0 +1,112 @@
+//! Every registered strategy against its contract, on scenes small and real.
+
+#![cfg(feature = "measure")]
+
+mod common;
+
+use citylights::strategy::Claim;
+use citylights::strategy::registry::{self, STRATEGIES};
+use citylights::verify::{Options, Truth, verify};
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
+use common::{ground, panel, point, sixteen, spot, stage, stage_with};
+use glam::Vec3;
+
+fn all_pass(scene: &str, stage: &Stage, options: &Options) {
+    let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.info().name).collect();
+    pass(scene, &names, stage, options);
+}
+
+/// Every strategy is looked at before the first failure is reported.
+fn pass(scene: &str, names: &[&str], stage: &Stage, options: &Options) {
+    let mut failed = Vec::new();
+    println!("{scene}");
+    for name in names {
+        let strategy = registry::parse(name).expect(name);
+        let checks = verify(&strategy, stage, options).expect(name);
+        for check in &checks {
+            println!("{name:<16} {check}");
+            if !check.passed {
+                failed.push(format!("{name:<16} {check}"));
+            }
+        }
+        let wanted = if matches!(strategy.info().claim, Claim::Biased(_)) { "bias" } else { "image-mean" };
+        assert!(checks.iter().any(|check| check.name == wanted), "{name} was not looked at");
+    }
+    assert!(failed.is_empty(), "{scene}\n{}", failed.join("\n"));
+}
+
+#[test]
+fn every_strategy_keeps_its_contract_among_sixteen_lights() {
+    all_pass("sixteen", &stage(sixteen()), &Options::default());
+    let more = ["uniform:picks=4", "power:picks=3", "intensity:picks=2", "influence-tail:picks=2,tail=3,cutoff=255"];
+    pass("sixteen", &more, &stage(sixteen()), &Options::default());
+    all_pass(
+        "sixteen, nothing left out",
+        &stage_with(sixteen(), LeaveOut::No, Offset::SCALED),
+        &Options { receivers: 8, ..Options::default() },
+    );
+}
+
+#[test]
+fn every_strategy_keeps_its_contract_with_few_lights() {
+    let lights = [
+        point(Vec3::new(1.0, 2.0, 5.0), 100.0),
+        spot(Vec3::new(-3.0, 0.0, 6.0), Vec3::new(0.2, 0.0, -1.0), 300.0),
+        panel(Vec3::new(2.0, -2.0, 4.0), Vec3::Y, Vec3::X, 80.0)[0],
+    ];
+    let options = Options { receivers: 8, draws: 2_000, ..Options::default() };
+    for n in 0..=3 {
+        all_pass(&format!("{n} lights"), &stage(ground(12.0, lights[..n].to_vec())), &options);
+    }
+    let same = vec![point(Vec3::new(1.0, 1.0, 5.0), 100.0); 50];
+    all_pass("identical lights", &stage(ground(12.0, same)), &options);
+    let below = (0..20).map(|i| point(Vec3::new(i as f32 - 10.0, 0.0, -1.0), 100.0)).collect();
+    all_pass("all behind the horizon", &stage_with(ground(12.0, below), LeaveOut::No, Offset::SCALED), &options);
+}
+
+#[test]
+fn every_strategy_covers_a_window_whose_centre_is_below_the_horizon() {
+    // 2 m of it below the ground, 1 m above: weighed at its centre it would add nothing.
+    let mut lights = panel(Vec3::new(-2.0, 8.0, -2.0), Vec3::X * 4.0, Vec3::Z * 3.0, 100.0).to_vec();
+    lights.push(point(Vec3::new(4.0, -4.0, 5.0), 60.0));
+    let stage = stage_with(ground(12.0, lights), LeaveOut::No, Offset::SCALED);
+    all_pass("a window across the horizon", &stage, &Options { points: 1_000, ..Options::default() });
+}
+
+#[test]
+fn the_truth_per_light_adds_up_to_the_exact_image() {
+    let stage = stage(sixteen());
+    for at in stage.receivers().iter().step_by(37) {
+        let truth = Truth::new(&stage, at, 2_000, 5);
+        let exact = citylights::render::exact::exact(&stage, at, 40_000, 6).mean();
+        let grey = f64::from(citylights::base::colour::luminance(exact.as_vec3()));
+        assert!((truth.total() - grey).abs() <= 4e-3 * grey, "{} for {grey} at pixel {}", truth.total(), at.pixel);
+    }
+}
+
+#[cfg(feature = "recipe")]
+fn shipped(name: &str, options: &Options) {
+    use citylights::scene::recipe::{Overrides, load};
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
+    let scene = load(&path, &Overrides::default()).expect(name);
+    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+    all_pass(name, &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..*options });
+}
+
+#[cfg(feature = "recipe")]
+#[test]
+fn every_strategy_keeps_its_contract_on_first_night() {
+    shipped("first-night", &Options::default());
+}
+
+#[cfg(feature = "recipe")]
+#[test]
+#[ignore = "takes a minute; for a change to strategies or to leaving out"]
+fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
+    for name in ["lamps-only", "plaza", "moonlit", "stadium"] {
+        for seed in 1..=3 {
+            shipped(name, &Options { seed, ..Options::default() });
+        }
+    }
+}
