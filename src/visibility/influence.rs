@@ -3,7 +3,7 @@
 //! A bounding-volume hierarchy over the lights' influence volumes lists them in O(log n + listed). Directional lights
 //! have no range: they stand in a list beside it and are always in range.
 
-use super::bvh;
+use super::bvh::{self, Asked};
 use crate::scene::Scene;
 use crate::scene::influence::{Cutoff, Influence};
 use crate::scene::light::LightId;
@@ -29,7 +29,7 @@ impl InfluenceTree {
                 None => everywhere.push(id),
             }
         }
-        let bvh = bvh::build(volumes.iter().map(|(volume, _)| volume.bounds()), 8);
+        let bvh = bvh::build(volumes.iter().map(|(volume, _)| volume.bounds()), Asked::Points);
         let volumes = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
         Self { bvh, volumes, everywhere }
     }

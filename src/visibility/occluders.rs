@@ -2,7 +2,7 @@
 //!
 //! Surfaces and emissive triangles, both from both sides, in one `obvhs` hierarchy of binary nodes.
 
-use super::bvh;
+use super::bvh::{self, Asked};
 use super::offset::Segment;
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
@@ -38,7 +38,7 @@ impl Occluders {
             .map(|(surface, i)| (surface.corners, Met::Surface(i)))
             .chain(emitters.map(|(light, id)| (light.corners(), Met::Light(id))))
             .unzip();
-        let bvh = bvh::build(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))), 4);
+        let bvh = bvh::build(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))), Asked::Rays);
         let order = || bvh.primitive_indices.iter().map(|&i| i as usize);
         let triangles = order().map(|i| RtTriangle::from(&triangle(corners[i]))).collect();
         let met = order().map(|i| met[i]).collect();

@@ -1,0 +1,166 @@
+//! How fast are the parts that every strategy stands on?
+//!
+//! All on `downtown`, on one thread, in CPU time. What is wanted (the ratio is judged on stderr):
+//!
+//! | benchmark | of what | wanted |
+//! |---|---|---|
+//! | `shadow-ray/ours` | a shadow ray to a light resampled from 16 candidates, offsets included | 3 million/s or more |
+//! | `shadow-ray/bare` | the same ray, made before, through the library alone | |
+//! | `shadow-ray-ratio/bare-over-ours` | the two taken in turns | 0.95 or more |
+//! | `influence/query` | the list of lights in range of a visible point | 400 ns + 25 ns a listed light or less |
+//! | `alias-table/draw` | a light by its flux | |
+//! | `power/without-ray` | a pick by flux and its shading, everything but the ray | 150 ns or less |
+
+mod common;
+
+use citylights::base::colour::luminance;
+use citylights::base::discrete::AliasTable;
+use citylights::base::random::{RunKey, Stream};
+use citylights::measure::target::spread;
+use citylights::render::film::Film;
+use citylights::render::passes::Plan;
+use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::needs::Needs;
+use citylights::scene::receiver::Receiver;
+use citylights::shading::contribution::{Arrival, contribution};
+use citylights::shading::importance::importance;
+use citylights::strategy::BuildContext;
+use citylights::strategy::registry::parse;
+use citylights::visibility::influence::InfluenceTree;
+use citylights::visibility::offset::Segment;
+use citylights::visibility::stage::Stage;
+use common::{CPU_TIME, Duel, RATIO, Reported};
+use criterion::{Criterion, SamplingMode, Throughput};
+use obvhs::ray::Ray;
+use std::hint::black_box;
+use std::time::Duration;
+
+/// Lights that each receiver chooses from.
+const CANDIDATES: usize = 16;
+const SCENE: &str = "downtown";
+
+fn main() {
+    let stage = common::stage(SCENE);
+    let mut criterion = common::criterion(CPU_TIME).measurement_time(Duration::from_secs(1));
+    let questions = questions(&stage);
+    shadow_rays(&mut criterion, &stage, &questions);
+    influence_query(&mut criterion, &stage);
+    alias_draw(&mut criterion, &stage);
+    power_without_ray(&mut criterion, stage);
+    criterion.final_summary();
+}
+
+/// A shadow ray to come: from a receiver, over a direction and a distance.
+struct Question {
+    from: Receiver,
+    to: Arrival,
+}
+
+/// One ray a receiver, to a light that resampling would choose: candidates by chance, one of them by importance.
+///
+/// Source: Talbot, Cline, Egbert, EGSR 2005.
+fn questions(stage: &Stage) -> Vec<Question> {
+    let table = stage.scene().lights();
+    let choose = |at: &Receiver| {
+        let mut rng = Stream::keyed(&[1, u64::from(at.pixel)]);
+        let (mut total, mut chosen) = (0.0, None);
+        for _ in 0..CANDIDATES {
+            let light = &table[stage.lights()[rng.below(stage.lights().len())] as usize];
+            let weight = f64::from(importance(light, at));
+            total += weight;
+            if rng.uniform64() * total < weight {
+                chosen = Some(light);
+            }
+        }
+        let to = contribution::<0b1111>(chosen?, rng.uniform2(), at).ok()?;
+        Some(Question { from: *at, to })
+    };
+    stage.receivers().iter().filter_map(choose).collect()
+}
+
+fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[Question]) {
+    let (bvh, triangles) = stage.occluders().parts();
+    let segment =
+        |question: &Question| stage.offset().segment(&question.from, question.to.direction, question.to.distance);
+    let through_ours = || questions.iter().filter(|question| stage.occluders().visible(&segment(question))).count();
+    let rays: Vec<Ray> = questions
+        .iter()
+        .map(|question| {
+            let Segment { origin, direction, t_min, t_max } = segment(question);
+            Ray::new(origin.into(), direction.into(), t_min, t_max)
+        })
+        .collect();
+    let bare = || {
+        let visible = |ray: &&Ray| bvh.ray_traverse_miss(**ray, |ray, i| triangles[i].intersect(ray));
+        rays.iter().filter(visible).count()
+    };
+    let (seen, seen_bare) = (through_ours(), bare());
+    eprintln!("{} shadow rays, {} unblocked ({} by the bare library)\n", questions.len(), seen, seen_bare);
+
+    let mut group = criterion.benchmark_group("shadow-ray");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(1));
+    group.bench_function("ours", |b| common::per_element(b, questions.len(), through_ours));
+    group.bench_function("bare", |b| common::per_element(b, questions.len(), bare));
+    group.finish();
+
+    let mut criterion = common::criterion(RATIO).measurement_time(Duration::from_secs(2));
+    let mut group = common::flat(&mut criterion, "shadow-ray-ratio");
+    // The bare library's time over ours: a share of its speed.
+    let mut duel = Duel::new(bare, through_ours);
+    duel.bench(&mut group, "bare-over-ours");
+    group.finish();
+    duel.judge("shadow-ray-ratio/bare-over-ours", &(0.95..=f64::INFINITY));
+}
+
+fn influence_query(criterion: &mut Criterion<Reported>, stage: &Stage) {
+    let cutoff = Cutoff::new(stage.scene(), 0.5, Transfer::Linear);
+    let tree = InfluenceTree::new(stage.scene(), stage.lights(), cutoff);
+    let receivers = spread(stage.receivers(), 4096);
+    let mut list = Vec::new();
+    let mut query = |at: &Receiver| {
+        list.clear();
+        tree.list(at.position, &mut list);
+        black_box(&list).len()
+    };
+    let listed = receivers.iter().map(&mut query).sum::<usize>() as f64 / receivers.len() as f64;
+    eprintln!("{listed:.1} lights listed on average: a query should take {:.0} ns or less\n", 400.0 + 25.0 * listed);
+    let mut group = common::flat(criterion, "influence");
+    group.bench_function("query", |b| {
+        common::per_element(b, receivers.len(), || receivers.iter().map(&mut query).sum::<usize>());
+    });
+    group.finish();
+}
+
+fn alias_draw(criterion: &mut Criterion<Reported>, stage: &Stage) {
+    let scene = stage.scene();
+    let radius = scene.radius();
+    let weights: Vec<f64> = scene.lights().iter().map(|light| f64::from(luminance(light.flux(radius)))).collect();
+    let table = AliasTable::new(&weights).expect("downtown has lights");
+    let mut rng = Stream::keyed(&[1]);
+    const DRAWS: usize = 4096;
+    let mut group = common::flat(criterion, "alias-table");
+    group.bench_function("draw", |b| {
+        common::per_element(b, DRAWS, || (0..DRAWS).map(|_| table.pick(rng.bits())).fold(0, usize::wrapping_add));
+    });
+    group.finish();
+}
+
+fn power_without_ray(criterion: &mut Criterion<Reported>, stage: Stage) {
+    let needs = Needs { occlusion: false, ..Needs::of(stage.scene()) };
+    let stage = stage.with_needs(needs);
+    const PASSES: u32 = 16;
+    let sampler = parse("power")
+        .and_then(|power| power.build(BuildContext { stage: &stage, seed: 1 }))
+        .expect("power can be built for any scene");
+    let receivers = spread(stage.receivers(), 4096);
+    let mut group = common::flat(criterion, "power");
+    group.bench_function("without-ray", |b| {
+        common::per_element(b, receivers.len() * PASSES as usize, || {
+            let mut film = Film::new(receivers.len());
+            let key = RunKey { seed: 1, run: 0 };
+            Plan { stage: &stage, receivers: &receivers, sampler: sampler.as_ref(), key }.run(PASSES, &mut film);
+            film
+        });
+    });
+    group.finish();
+}
