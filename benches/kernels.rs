@@ -86,8 +86,8 @@ fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[
     let rays: Vec<Ray> = questions
         .iter()
         .map(|question| {
-            let Segment { origin, direction, t_min, t_max } = segment(question);
-            Ray::new(origin.into(), direction.into(), t_min, t_max)
+            let Segment { origin, along, t_min, t_max } = segment(question);
+            Ray::new(origin.into(), along.into(), t_min, t_max)
         })
         .collect();
     let bare = || {
