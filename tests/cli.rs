@@ -205,7 +205,7 @@ fn an_interrupted_comparison_keeps_its_rows_and_goes_on() {
     };
     let rows = || std::fs::read_to_string(out.join("runs.csv")).map_or(0, |text| text.lines().count());
     let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("citylights"))
-        .args(arguments("300"))
+        .args(arguments("250"))
         .stderr(std::process::Stdio::null())
         .stdout(std::process::Stdio::null())
         .spawn()
@@ -219,13 +219,16 @@ fn an_interrupted_comparison_keeps_its_rows_and_goes_on() {
     assert_eq!(status.code(), Some(130), "it ended before it was interrupted");
     let kept = rows();
     assert!(kept >= 20);
-    citylights().args(arguments("300")).assert().success();
+    let again = || citylights().args(arguments("250")).assert();
+    let text = std::fs::read_to_string(&file).expect("the recipe");
+    std::fs::write(&file, text.replace("intensity = 100", "intensity = 200")).expect("written");
+    again().code(2).stderr(contains("another comparison"));
+    std::fs::write(&file, text).expect("written");
+    again().success();
     let text = std::fs::read_to_string(out.join("runs.csv")).expect("rows");
-    let mut seen = std::collections::HashSet::new();
-    for line in text.lines().skip(1) {
-        let key: Vec<&str> = line.split(',').take(4).collect();
-        seen.insert(key.join(","));
-    }
-    assert!(seen.len() > kept, "{} rows after {kept}", seen.len());
-    assert_eq!(seen.len() % 300, 0, "each run has all its budgets: {}", seen.len());
+    let keys: Vec<String> = text.lines().skip(1).map(|l| l.split(',').take(4).collect::<Vec<_>>().join(",")).collect();
+    let distinct: std::collections::HashSet<&String> = keys.iter().collect();
+    assert_eq!(distinct.len(), keys.len(), "a run stands twice in runs.csv");
+    assert!(keys.len() > kept, "{} rows after {kept}", keys.len());
+    assert_eq!(keys.len() % 250, 0, "each run has all its budgets: {}", keys.len());
 }

@@ -32,6 +32,7 @@ fn record() -> RunRecord {
     let value = |mean| Interval { mean, half_width: 0.1 * mean };
     RunRecord {
         schema: SCHEMA,
+        plan: "scenes; strategies; budget".into(),
         command: "citylights compare scenes/village.toml".to_owned(),
         date: "2026-11-22".to_owned(),
         revision: "67eec73".to_owned(),
@@ -152,7 +153,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
         fs::write(&path, &whole[..cut]).expect("written");
         let rows = store::read_rows(folder.path()).expect("read");
         assert!(rows.cut_short && rows.rows == [row(0), row(1)], "cut at {cut}");
-        let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
+        let (mut writer, finished) = RowWriter::resume(folder.path(), |_| true).expect("resumed");
         assert_eq!(finished, [row(0), row(1)]);
         writer.write(&row(2)).expect("written");
         assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -160,7 +161,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
     // Even the header can be cut short.
     fs::write(&path, &whole[..9]).expect("written");
     assert!(store::read_rows(folder.path()).expect("read").cut_short);
-    let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
+    let (mut writer, finished) = RowWriter::resume(folder.path(), |_| true).expect("resumed");
     assert!(finished.is_empty());
     (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
     assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -195,7 +196,7 @@ fn records_of_another_schema_or_cut_short_are_refused() {
     let whole = fs::read_to_string(&path).expect("read");
     for (from, to, expected) in [
         ("\"schema\": 1", "\"schema\": 2", "`schema`: is 2, this program reads 1"),
-        ("\"seed\": 1", "\"sed\": 1", "run.json:6: unknown field `sed`"),
+        ("\"seed\": 1", "\"sed\": 1", "run.json:7: unknown field `sed`"),
         ("\"inf\"", "\"fast\"", "expected a number, \"inf\", \"-inf\" or \"nan\""),
     ] {
         fs::write(&path, whole.replacen(from, to, 1)).expect("written");

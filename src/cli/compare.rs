@@ -2,13 +2,14 @@
 
 use super::progress::Progress;
 use super::scene::{SceneOptions, pool, threads};
-use super::{Outcome, print};
+use super::{Outcome, print, say};
 use crate::base::error::{Error, Result};
 use crate::measure::compare::{Options, compare};
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
-use crate::record::store::{RowWriter, create_folder, read_run, write_run};
+use crate::measure::reference::scene_hash;
+use crate::record::store::{RUN_FILE, RowWriter, create_folder, file_name, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
 use crate::report;
 use crate::report::table;
@@ -37,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", default_value = "2", value_parser = seconds)]
     seconds: f64,
     /// Independent runs
-    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
     /// The result folder; a new one under results/ by default. An interrupted comparison there is resumed
     #[arg(long, value_name = "DIR")]
@@ -64,20 +65,27 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         // Every recipe is read before anything is measured: a mistake in the last must not cost an hour.
         let scenes =
             arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
-        let names: Vec<&str> = scenes.iter().map(Scene::name).collect();
+        let names: Vec<String> = scenes.iter().map(|scene| file_name(scene.name())).collect();
         if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
             return Err(
                 Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
             );
         }
-        let mut session = Session::open(arguments, &names)?;
+        let record = record(arguments, &strategies, &scenes);
+        if threads > environment::cores() {
+            say(&format!(
+                "{threads} runs side by side on {} cores: wall times will mean nothing",
+                environment::cores()
+            ));
+        }
+        let mut session = Session::open(arguments, record, &scenes)?;
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
             session.scene(&stage, file, arguments, &strategies, threads, &progress)?;
         }
         session.finish()?;
-        eprintln!("rows, tables and plots: {}", session.folder.display());
+        say(&format!("rows, tables and plots: {}", session.folder.display()));
         Ok(Outcome::Done)
     })
 }
@@ -92,24 +100,24 @@ struct Session {
 }
 
 impl Session {
-    fn open(arguments: &Arguments, scenes: &[&str]) -> Result<Self> {
-        let record = record(arguments);
-        if let Some(folder) = arguments.out.as_deref().filter(|folder| folder.join("run.json").exists()) {
+    fn open(arguments: &Arguments, record: RunRecord, scenes: &[Scene]) -> Result<Self> {
+        std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
+        if let Some(folder) = arguments.out.as_deref().filter(|folder| folder.join(RUN_FILE).exists()) {
             let earlier = read_run(folder)?;
+            let (folder_name, begun) = (folder.display(), &earlier.command);
             if earlier.finished {
+                let text = "holds a finished comparison; results are never overwritten: name another folder";
+                return Err(Error::Invalid(format!("{folder_name} {text}")));
+            }
+            if (&earlier.plan, &earlier.machine, &earlier.revision) != (&record.plan, &record.machine, &record.revision)
+            {
+                let text = "with the same recipes, options, machine and revision, or name another folder";
                 return Err(Error::Invalid(format!(
-                    "{} holds a finished comparison; results are never overwritten: name another folder",
-                    folder.display()
+                    "{folder_name} holds another comparison, begun as `{begun}`; resume that, {text}"
                 )));
             }
-            if (earlier.seed, earlier.repeats) != (record.seed, record.repeats) || earlier.machine != record.machine {
-                return Err(Error::Invalid(format!(
-                    "{} holds another comparison, begun as `{}`; resume that, or name another folder",
-                    folder.display(),
-                    earlier.command
-                )));
-            }
-            let (rows, before) = RowWriter::resume(folder)?;
+            let films = Films::of(folder);
+            let (rows, before) = RowWriter::resume(folder, |row| films.has(&row.scene, &row.strategy, row.run))?;
             return Ok(Self { folder: folder.to_owned(), record, rows, before });
         }
         let folder = match &arguments.out {
@@ -117,7 +125,10 @@ impl Session {
                 std::fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
                 folder.clone()
             }
-            None => create_folder(Path::new("results"), &record.date, &scenes.join("+"), &record.revision)?,
+            None => {
+                let names: Vec<&str> = scenes.iter().map(Scene::name).collect();
+                create_folder(Path::new("results"), &record.date, &names.join("+"), &record.revision)?
+            }
         };
         let rows = RowWriter::create(&folder)?;
         write_run(&folder, &record)?;
@@ -150,10 +161,10 @@ impl Session {
         let (scene, rows) =
             compare(stage, &file, &options, &self.before, &mut self.rows, progress).inspect_err(|error| {
                 if matches!(error, Error::Interrupted) {
-                    eprintln!(
+                    say(&format!(
                         "finished rows are in {0}; the same command with --out {0} goes on from there",
                         self.folder.display()
-                    );
+                    ));
                 }
             })?;
         self.record.scenes.push(scene);
@@ -169,13 +180,25 @@ impl Session {
     fn finish(&mut self) -> Result<()> {
         self.record.finished = true;
         write_run(&self.folder, &self.record)?;
-        Films::of(&self.folder).remove()?;
-        report::report(&self.folder).map(|_| ())
+        report::report(&self.folder)?;
+        Films::of(&self.folder).remove()
     }
 }
 
-fn record(arguments: &Arguments) -> RunRecord {
+fn record(arguments: &Arguments, strategies: &[Configured], scenes: &[Scene]) -> RunRecord {
+    let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
+    let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
     RunRecord {
+        plan: format!(
+            "scenes {}; strategies {}; budget {:?}, {} s; {} runs; seed {}; {}",
+            scenes.join(" "),
+            strategies.join(" "),
+            arguments.budget,
+            arguments.seconds,
+            arguments.repeats,
+            arguments.seed,
+            arguments.scene_options.describe()
+        ),
         schema: SCHEMA,
         command: std::iter::once("citylights".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" "),
         date: environment::date(),

@@ -57,7 +57,11 @@ fn text(i: &Inspection) -> Result<String, std::fmt::Error> {
         "lights in range of a visible point (0.5/255, linear): mean {:.1}; 5 % {:.0}, 50 % {:.0}, 95 % {:.0}",
         r.mean, r.p5, r.p50, r.p95
     )?;
-    writeln!(out, "lights that reach no visible surface: {}", i.unreaching)?;
+    writeln!(
+        out,
+        "lights that reach no visible surface: {} provably, by facing; {} are seen from none of {} points",
+        i.unreaching, i.unseen, i.pixels.receivers_sampled
+    )?;
     let p = i.pixels;
     if let (Some(lx), Some(above)) = (p.street_lx, p.street_above_step_share) {
         writeln!(out, "visible street: mean {lx:.1} lx; {:.0} % of it above one display step", above * 100.0)?;

@@ -62,11 +62,17 @@ pub fn run() -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::CheckFailed) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("citylights: {error:#}");
+            say(&format!("citylights: {error}"));
             let interrupted = matches!(error.downcast_ref::<Error>(), Some(Error::Interrupted));
             ExitCode::from(if interrupted { 130 } else { 2 })
         }
     }
+}
+
+/// Tells the user something on stderr; one that has been closed is no error.
+fn say(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints to stdout; a reader that has gone away (`| head`) is no error.

@@ -1,5 +1,6 @@
 //! Progress on stderr, and Ctrl-C.
 
+use super::say;
 use crate::measure::observer::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,7 +22,7 @@ impl Progress {
             if flag.swap(true, Ordering::SeqCst) {
                 std::process::exit(130);
             }
-            eprintln!("\nstopping; what is finished is kept (once more to stop at once)");
+            say("\nstopping; what is finished is kept (once more to stop at once)");
         })?;
         Ok(Self { stopped, bar: Mutex::new(ProgressBar::hidden()), scene: Mutex::default() })
     }
@@ -47,7 +48,7 @@ impl Observer for Progress {
             *bar = ProgressBar::new(total);
             if bar.is_hidden() {
                 // No terminal: a line a stage.
-                eprintln!("{scene}: {what}, {total} steps");
+                say(&format!("{scene}: {what}, {total} steps"));
                 return;
             }
             let style = ProgressStyle::with_template("{prefix:>24} {bar:40} {pos}/{len}  {elapsed} (about {eta} left)");
@@ -63,10 +64,6 @@ impl Observer for Progress {
 
     fn end(&self) {
         self.with(|bar| bar.finish_and_clear());
-    }
-
-    fn note(&self, text: &str) {
-        self.with(|bar| bar.suspend(|| eprintln!("{text}")));
     }
 
     fn stopped(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use super::render::save;
 use super::scene::{SceneOptions, check_output, pool, threads};
-use super::{Outcome, print};
+use super::{Outcome, print, say};
 use crate::measure::reference::Reference;
 use crate::measure::target::{MOST_PAIRS, Target};
 use clap::Args;
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         progress.scene(stage.scene().name());
         let pairs = stage.receivers().len() as u64 * stage.scene().lights().len() as u64;
         if pairs > MOST_PAIRS {
-            eprintln!("{}: {pairs} pairs of pixel and light; this takes a while", stage.scene().name());
+            say(&format!("{}: {pairs} pairs of pixel and light; this takes a while", stage.scene().name()));
         }
         let reference = Reference::compute(&Target::whole(&stage), arguments.noise, &arguments.cache, &progress)?;
         save(&stage, reference.truth.mean(), &arguments.output)?;

@@ -1,7 +1,7 @@
 //! `citylights render`: one picture by one strategy.
 
 use super::scene::{SceneOptions, check_output, pool, threads};
-use super::{Outcome, print};
+use super::{Outcome, print, say};
 use crate::base::error::{Error, Result};
 use crate::base::random::RunKey;
 use crate::image::{self, Picture};
@@ -69,7 +69,7 @@ pub(super) fn save(stage: &Stage, receivers: &[glam::Vec3], output: &std::path::
     let picture = Picture { width, height, pixels: picture(stage, receivers) };
     let bad = image::write(output, &picture, stage.scene().exposure())?;
     if bad > 0 {
-        eprintln!("{bad} pixels are not finite; they are magenta in the picture");
+        say(&format!("{bad} pixels are not finite; they are magenta in the picture"));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Options that say which scene, and how it is prepared.
 
+use super::say;
 use crate::base::error::Error;
 use crate::base::names;
 use crate::image::Format;
@@ -40,9 +41,14 @@ impl SceneOptions {
         let ev100 = self.exposure.map(|exposure| -(1.2 * exposure).log2()).or(self.ev100);
         let scene = recipe::load(file, &Overrides { seed: self.scene_seed, resolution: self.resolution, ev100 })?;
         for note in scene.notes() {
-            eprintln!("{}: {note}", scene.name());
+            say(&format!("{}: {note}", scene.name()));
         }
         Ok(scene)
+    }
+
+    /// The options that decide an image beside the scene itself.
+    pub(super) fn describe(&self) -> String {
+        format!("{:?}, leave out {:?}", self.offset, self.leave_out)
     }
 
     /// Loads a scene and makes it ready.
@@ -52,19 +58,30 @@ impl SceneOptions {
 
     /// Makes a loaded scene ready.
     pub(super) fn prepare(&self, scene: Scene) -> Stage {
-        Stage::new(scene, self.leave_out, self.offset)
+        let stage = Stage::new(scene, self.leave_out, self.offset);
+        if stage.receivers().is_empty() {
+            say(&format!("{}: the camera sees no surface: nothing but sky and emitters", stage.scene().name()));
+        }
+        stage
     }
 }
 
 /// Refuses a picture that could not be written, before the work instead of after it.
 pub(super) fn check_output(file: &Path) -> Result<(), Error> {
     Format::of(file)?;
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if folder.is_dir() {
-        Ok(())
-    } else {
-        Err(Error::Invalid(format!("cannot write {}: there is no folder {}", file.display(), folder.display())))
+    if file.is_dir() {
+        return Err(Error::Invalid(format!("cannot write {}: it is a folder", file.display())));
     }
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(Error::Invalid(format!(
+            "cannot write {}: there is no folder {}",
+            file.display(),
+            folder.display()
+        )));
+    }
+    let probe = folder.join(format!(".citylights-{}", std::process::id()));
+    std::fs::write(&probe, b"").and_then(|()| std::fs::remove_file(&probe)).map_err(Error::io("write", file))
 }
 
 /// A pool of `threads` threads; all cores where none is given.

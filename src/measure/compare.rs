@@ -40,7 +40,8 @@ pub struct Options<'a> {
     pub folder: &'a Path,
 }
 
-/// Compares strategies on a scene. Rows go to `rows` as they come; runs of which `before` has the rows are not repeated.
+/// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
+/// repeated: runs whose image is kept (see [`Films`]).
 pub fn compare(
     stage: &Stage,
     file: &str,
@@ -76,17 +77,6 @@ pub fn compare(
 
     let summaries: Vec<Summary> = (0..options.strategies.len()).map(|i| comparison.summary(i, &pilots[i])).collect();
     let mut notes = stage.scene().notes().to_vec();
-    let least = summaries
-        .iter()
-        .filter(|s| s.chooses && s.rel_mse.mean.is_finite())
-        .map(|s| s.rel_mse.mean)
-        .fold(f64::INFINITY, f64::min);
-    let own = reference.truth.own_rel_mse();
-    if own * 100.0 > least {
-        notes.push(format!(
-            "the reference's own relMSE {own:.1e} is more than a hundredth of the best row's {least:.1e}"
-        ));
-    }
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
     }
@@ -110,7 +100,7 @@ fn record(
     SceneRecord {
         name: stage.scene().name().to_owned(),
         file: file.to_owned(),
-        hash: scene_hash(stage),
+        hash: scene_hash(stage.scene()),
         seed: stage.scene().seed(),
         lights: stage.scene().lights().len() as u64,
         width,
@@ -147,7 +137,7 @@ fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> R
     Ok(pilots)
 }
 
-/// The budgets of a strategy: those of its rows so far where a comparison is resumed, or what its pilot says.
+/// The budgets of a strategy: those of its finished runs where a comparison is resumed, or what its pilot says.
 fn ladder(
     strategy: &Configured,
     pilot: Option<&Pilot>,
@@ -155,10 +145,8 @@ fn ladder(
     options: &Options<'_>,
     before: &[Row],
 ) -> Vec<u32> {
-    let so_far = before
-        .iter()
-        .filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name() && row.error.is_none());
-    match (so_far.map(|row| row.passes).max(), pilot) {
+    let finished = before.iter().filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name());
+    match (finished.map(|row| row.passes).max(), pilot) {
         (Some(most), _) => (0..31).map(|rung| 1 << rung).take_while(|&passes| passes <= most).collect(),
         (None, Some(pilot)) => pilot.ladder(options.budget, options.repeats),
         (None, None) => Vec::new(),
@@ -332,7 +320,7 @@ impl Comparison<'_> {
         let mut rows: Vec<&Row> =
             mine.filter(|row| row.passes == last && self.films.contains_key(&(index, row.run))).collect();
         rows.sort_by_key(|row| row.run);
-        let images: Vec<Vec<Vec3>> = rows.iter().map(|row| self.films[&(index, row.run)].clone()).collect();
+        let images: Vec<&[Vec3]> = rows.iter().map(|row| self.films[&(index, row.run)].as_slice()).collect();
         summarise(strategy, pilot, &self.reference.truth, &rows, &images)
     }
 }

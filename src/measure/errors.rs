@@ -64,9 +64,11 @@ impl Truth {
 
     /// Standard error of the mean luminance as a share of it; 0 for an exact sum.
     pub fn own_energy_error(&self) -> f64 {
-        let total = |image: &[Vec3]| image.iter().map(|&x| f64::from(luminance(x))).sum::<f64>();
-        let (a, b) = (total(&self.halves[0]), total(&self.halves[1]));
-        if a + b > 0.0 { ((a - b) / (a + b)).abs() } else { 0.0 }
+        // Receivers are sampled independently: each difference of halves is four times the variance of their mean.
+        let difference = |i: usize| f64::from(luminance(self.halves[0][i]) - luminance(self.halves[1][i]));
+        let variance: f64 = (0..self.mean.len()).map(|i| difference(i).powi(2) / 4.0).sum();
+        let total: f64 = self.mean.iter().map(|&x| f64::from(luminance(x))).sum();
+        if total > 0.0 { variance.sqrt() / total } else { 0.0 }
     }
 
     /// `1 / (truth^2 + epsilon)` per channel; 0 where that would be a division of nothing by nothing.

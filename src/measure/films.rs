@@ -1,6 +1,7 @@
 //! The last image of each finished run, kept while a comparison goes on so that it can be resumed.
 
 use crate::base::error::{Error, Result};
+use crate::base::file::write_whole;
 use crate::record::store::file_name;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -20,7 +21,12 @@ impl Films {
     pub fn save(&self, scene: &str, strategy: &str, run: u32, image: &[Vec3]) -> Result<()> {
         std::fs::create_dir_all(&self.folder).map_err(Error::io("create", &self.folder))?;
         let path = self.path(scene, strategy, run);
-        std::fs::write(&path, bytemuck::cast_slice(image)).map_err(Error::io("write", path))
+        write_whole(&path, bytemuck::cast_slice(image))
+    }
+
+    /// Whether the image of a finished run is there.
+    pub fn has(&self, scene: &str, strategy: &str, run: u32) -> bool {
+        self.path(scene, strategy, run).is_file()
     }
 
     /// A kept image of so many receivers, if it is there and whole.

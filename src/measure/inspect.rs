@@ -4,7 +4,7 @@ use super::reference::scene_hash;
 use super::target::spread;
 use crate::base::colour::luminance;
 use crate::base::statistics::quantile;
-use crate::render::exact::exact;
+use crate::render::exact::{exact, shadowed};
 use crate::scene::influence::{Cutoff, Transfer};
 use crate::scene::light::{Kind, Light, LightId};
 use crate::scene::receiver::Receiver;
@@ -39,8 +39,10 @@ pub struct Inspection {
     pub groups: Vec<Part>,
     /// Lights in range of a visible point, at 0.5/255 of a linear display.
     pub in_range: Listed,
-    /// Lights that provably reach no visible point: each faces away from all of them.
+    /// Lights that provably reach no visible point, by facing alone.
     pub unreaching: u64,
+    /// Lights whose middle none of the sampled receivers sees: behind the horizon, facing away or hidden.
+    pub unseen: u64,
     /// Pixels.
     pub pixels: Pixels,
     /// Bytes.
@@ -120,7 +122,7 @@ pub fn inspect(stage: &Stage) -> Inspection {
     let lights = scene.lights().len().max(1) as f64;
     Inspection {
         name: scene.name().to_owned(),
-        hash: scene_hash(stage),
+        hash: scene_hash(scene),
         origin: scene.origin().to_array(),
         size: (high - low).to_array(),
         resolution: stage.view().resolution(),
@@ -130,6 +132,7 @@ pub fn inspect(stage: &Stage) -> Inspection {
         groups: groups(stage),
         in_range: in_range(&tree, stage.receivers()),
         unreaching: (scene.lights().len() - stage.lights().len()) as u64,
+        unseen: unseen(stage),
         pixels: pixels(stage),
         memory: Memory {
             table_bytes_per_light: size_of::<Light>() as f64,
@@ -183,11 +186,25 @@ fn in_range(tree: &InfluenceTree, receivers: &[Receiver]) -> Listed {
     Listed { mean, p5: at(0.05), p50: at(0.5), p95: at(0.95) }
 }
 
+/// The receivers at which light is measured.
+fn sampled(stage: &Stage) -> Vec<Receiver> {
+    let count = (EVALUATIONS / stage.scene().lights().len().max(1)).clamp(64, SAMPLES);
+    spread(stage.receivers(), count)
+}
+
+fn unseen(stage: &Stage) -> u64 {
+    let receivers = sampled(stage);
+    // The map of the lecture's square root puts this in the middle of a triangle.
+    let middle = [4.0 / 9.0, 0.5];
+    let seen =
+        |light: &&Light| receivers.iter().any(|at| shadowed(stage, at, light, middle, &mut 0).max_element() > 0.0);
+    stage.scene().lights().par_iter().filter(|light| !seen(light)).count() as u64
+}
+
 fn pixels(stage: &Stage) -> Pixels {
     let scene = stage.scene();
     let exposure = scene.exposure();
-    let count = (EVALUATIONS / scene.lights().len().max(1)).clamp(64, SAMPLES);
-    let sampled = spread(stage.receivers(), count);
+    let sampled = sampled(stage);
     // Illuminance of each: what a white receiver reflects, times pi.
     let lit: Vec<(Receiver, Vec3)> = sampled
         .into_par_iter()

@@ -10,8 +10,6 @@ pub trait Observer: Sync {
     fn advance(&self, _steps: u64) {}
     /// The stage has ended.
     fn end(&self) {}
-    /// Something that the user should know now.
-    fn note(&self, _text: &str) {}
     /// Whether the user asked to stop.
     fn stopped(&self) -> bool {
         false
@@ -23,7 +21,7 @@ pub trait Observer: Sync {
     }
 }
 
-/// Watches nothing.
+/// Watches nothing: for benches and tests.
 pub struct Unobserved;
 
 impl Observer for Unobserved {}

@@ -6,6 +6,7 @@ use super::target::Target;
 use super::tiles::{self, TileFile};
 use crate::base::error::{Error, Result};
 use crate::render::exact::{Exact, exact};
+use crate::scene::Scene;
 use crate::scene::light::Kind;
 use crate::visibility::stage::Stage;
 use cpu_time::ThreadTime;
@@ -115,15 +116,18 @@ fn has_triangles(stage: &Stage) -> bool {
 /// The file name of a reference: a hash of all that decides it.
 fn name(target: &Target<'_>, points: u32) -> String {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(scene_hash(target.stage).as_bytes());
-    hasher.update(format!("{VERSION} {:?} {points} {}", target.stage.offset(), target.receivers.len()).as_bytes());
+    hasher.update(scene_hash(target.stage.scene()).as_bytes());
+    hasher.update(format!("{VERSION} {:?} {points}", target.stage.offset()).as_bytes());
+    target.receivers.iter().for_each(|at| {
+        hasher.update(&at.pixel.to_le_bytes());
+    });
     hasher.finalize().to_hex()[..32].to_owned()
 }
 
 /// The content hash that names a scene: 32 hexadecimal digits.
-pub fn scene_hash(stage: &Stage) -> String {
+pub fn scene_hash(scene: &Scene) -> String {
     let mut hasher = blake3::Hasher::new();
-    stage.scene().digest(|bytes| {
+    scene.digest(|bytes| {
         hasher.update(bytes);
     });
     hasher.finalize().to_hex()[..32].to_owned()

@@ -45,7 +45,7 @@ pub fn blank(strategy: &Configured) -> Summary {
 }
 
 /// The summary of a strategy from the rows and images of its runs at its largest budget, in the same order.
-pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&Row], images: &[Vec<Vec3>]) -> Summary {
+pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&Row], images: &[&[Vec3]]) -> Summary {
     let mut summary = blank(strategy);
     if rows.is_empty() {
         return summary;
@@ -98,13 +98,13 @@ fn unstable(rows: &[&Row]) -> bool {
 /// Runs taken apart into what they share (bias) and in what they differ (variance).
 struct Spread<'a> {
     truth: &'a Truth,
-    images: &'a [Vec<Vec3>],
+    images: &'a [&'a [Vec3]],
     sums: Vec<DVec3>,
     squares: Vec<DVec3>,
 }
 
 impl<'a> Spread<'a> {
-    fn of(truth: &'a Truth, images: &'a [Vec<Vec3>]) -> Self {
+    fn of(truth: &'a Truth, images: &'a [&'a [Vec3]]) -> Self {
         let n = truth.mean().len();
         let add = |value: fn(DVec3) -> DVec3| {
             (0..n).map(|i| images.iter().fold(DVec3::ZERO, |sum, image| sum + value(image[i].as_dvec3()))).collect()
@@ -130,7 +130,7 @@ impl<'a> Spread<'a> {
         if k < 3 {
             return Interval { mean: f64::NAN, half_width: f64::INFINITY };
         }
-        let bias2 = |left_out: Option<&Vec<Vec3>>| {
+        let bias2 = |left_out: Option<&&[Vec3]>| {
             let k = if left_out.is_some() { k - 1 } else { k } as f64;
             self.truth.mean_over(|i| {
                 let out = left_out.map_or(DVec3::ZERO, |image| image[i].as_dvec3());
@@ -161,6 +161,7 @@ mod tests {
                 (0..n).map(|_| Vec3::splat(0.8 + rng.uniform() - 0.5)).collect()
             })
             .collect();
+        let images: Vec<&[Vec3]> = images.iter().map(Vec::as_slice).collect();
         let spread = Spread::of(&truth, &images);
         let bias2 = spread.rel_bias2();
         assert!((bias2.mean * 1.01 - 0.04).abs() < bias2.half_width * 1.5, "{bias2:?}");

@@ -132,19 +132,19 @@ impl RowWriter {
         Ok(writer)
     }
 
-    /// Goes on with the `runs.csv` of an interrupted run and gives the rows that it finished; a line cut short is removed.
-    pub fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
+    /// Goes on with the `runs.csv` of an interrupted run and gives the rows of it that `keep` accepts; the others, which
+    /// will be made again, and a line cut short are removed.
+    pub fn resume(folder: &Path, keep: impl Fn(&Row) -> bool) -> Result<(Self, Vec<Row>)> {
         let path = folder.join(ROWS_FILE);
         let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
-        let rows = parse_rows(&path, &text)?.rows;
-        let file = OpenOptions::new().append(true).open(&path).map_err(Error::io("write", &path))?;
-        let finished = finished_bytes(&text);
-        file.set_len(finished as u64).map_err(Error::io("write", &path))?;
-        let mut writer = Self { file, path };
-        if finished == 0 {
-            writer.append(&COLUMNS)?;
+        let rows: Vec<Row> = parse_rows(&path, &text)?.rows.into_iter().filter(keep).collect();
+        let mut kept = line(&COLUMNS).map_err(Error::io("write", &path))?;
+        for row in &rows {
+            kept.extend(line(&row.fields()).map_err(Error::io("write", &path))?);
         }
-        Ok((writer, rows))
+        write_whole(&path, &kept)?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(Error::io("write", &path))?;
+        Ok((Self { file, path }, rows))
     }
 
     /// Appends one row; it is in the file when this returns.
@@ -153,13 +153,16 @@ impl RowWriter {
     }
 
     fn append<T: AsRef<[u8]>>(&mut self, fields: &[T]) -> Result<()> {
-        let mut line = csv::Writer::from_writer(Vec::new());
-        let write = |e: std::io::Error| Error::io("write", &self.path)(e);
-        line.write_record(fields).map_err(|e| write(e.into()))?;
-        let line = line.into_inner().map_err(|e| write(e.into_error()))?;
         // One call for the whole line: a `File` has no buffer of its own that could be lost.
-        self.file.write_all(&line).map_err(write)
+        line(fields).and_then(|line| self.file.write_all(&line)).map_err(Error::io("write", &self.path))
     }
+}
+
+/// The fields as a line of CSV.
+fn line<T: AsRef<[u8]>>(fields: &[T]) -> std::io::Result<Vec<u8>> {
+    let mut line = csv::Writer::from_writer(Vec::new());
+    line.write_record(fields)?;
+    line.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
 fn input(path: &Path, line: Option<usize>, field: &str, message: String) -> Error {

@@ -36,7 +36,12 @@ impl Stage {
         let occluders = Occluders::new(&scene);
         let view = View::new(&scene, &occluders);
         let (needs, lights) = match leave_out {
-            LeaveOut::Yes => (Needs::of(&scene), reach::reaching(&scene, view.receivers())),
+            LeaveOut::Yes => {
+                let needs = Needs::of(&scene);
+                // The historical policies fail far from the origin: a surface then blocks its own rays, and shows it.
+                let occlusion = needs.occlusion || offset != Offset::SCALED;
+                (Needs { occlusion, ..needs }, reach::reaching(&scene, view.receivers()))
+            }
             LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
         };
         Self { scene: Arc::new(scene), occluders, view, needs, lights, offset }
