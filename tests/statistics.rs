@@ -86,27 +86,29 @@ fn the_truth_per_light_adds_up_to_the_exact_image() {
 }
 
 #[cfg(feature = "recipe")]
-fn shipped(name: &str, options: &Options) {
+fn shipped(name: &str, seed: u64, draws: usize) {
     use citylights::scene::recipe::{Overrides, load};
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
     let scene = load(&path, &Overrides::default()).expect(name);
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    all_pass(name, &stage, &Options { receivers: 16, draws: 10_000, points: 16, ..*options });
+    all_pass(name, &stage, &Options { receivers: 16, draws, points: 16, seed, ..Options::default() });
 }
 
 #[cfg(feature = "recipe")]
 #[test]
 fn every_strategy_keeps_its_contract_on_first_night() {
-    shipped("first-night", &Options::default());
+    shipped("first-night", 1, 10_000);
 }
 
 #[cfg(feature = "recipe")]
 #[test]
-#[ignore = "takes a minute; for a change to strategies or to leaving out"]
+#[ignore = "takes ten minutes; for a change to strategies or to leaving out"]
 fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
     for name in ["lamps-only", "plaza", "moonlit", "stadium"] {
         for seed in 1..=3 {
-            shipped(name, &Options { seed, ..Options::default() });
+            // Few draws leave means lopsided by lights that are rarely drawn: with 10,000, 2 of 12 seeds of a right
+            // strategy failed on stadium; with 200,000 none did.
+            shipped(name, seed, 100_000);
         }
     }
 }
