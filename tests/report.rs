@@ -204,6 +204,107 @@ fn a_section_holds_the_answer_and_where_it_came_from() {
     assert!(!section.contains("Work"));
 }
 
+/// The first table's cells of `strategy`, its name left out.
+fn cells(run: &RunRecord, rows: &[Row], strategy: &str) -> Vec<String> {
+    let section = report::section(run, &run.scenes[0], rows, "village.svg");
+    let line = section.lines().find(|line| line.starts_with(&format!("| `{strategy}`"))).expect("a row");
+    line.split(" | ").skip(1).map(|cell| cell.trim_end_matches(" |").to_owned()).collect()
+}
+
+const TO_TENTH: usize = 2;
+const TO_HUNDREDTH: usize = 3;
+const BALANCE: usize = 6;
+
+#[test]
+fn the_time_to_an_error_is_read_off_the_measured_curve() {
+    let (run, mut rows) = record();
+    // Errors of 0.4, 0.1, 0.025 at 1.5, 3, 6 s: V / 0.1 would be 0.25 s, less than one pass.
+    rows.retain(|row| row.strategy != "power" || row.passes <= 4);
+    for row in rows.iter_mut().filter(|row| row.strategy == "power") {
+        let nth = row.passes.ilog2() as i32;
+        (row.setup_cpu_s, row.cpu_s, row.rel_mse) = (0.5, [1.0, 2.5, 5.5][nth as usize], 0.4 * 0.25f64.powi(nth));
+    }
+    let times = |rows: &[Row]| {
+        let cells = cells(&run, rows, "power");
+        [cells[TO_TENTH].clone(), cells[TO_HUNDREDTH].clone()]
+    };
+    // Beyond the last budget: 0.5 + 5.5 * 0.025 / 0.01.
+    assert_eq!(times(&rows), ["3.00", "~14.2"]);
+    // 0.1 lies half-way between 0.4 and 0.025, the time half-way between 1.5 and 6.
+    rows.retain(|row| row.strategy != "power" || row.passes != 2);
+    assert_eq!(times(&rows), ["3.00", "~14.2"]);
+    rows.retain(|row| row.strategy != "power" || row.passes == 4);
+    assert_eq!(times(&rows), ["6.00", "~14.2"], "nothing is sooner than the first budget");
+    rows.retain(|row| row.strategy != "power");
+    assert_eq!(times(&rows), ["–", "–"]);
+}
+
+#[test]
+fn a_bias_bounds_what_is_extrapolated() {
+    let (mut run, mut rows) = record();
+    let name = "range:cutoff=0.5";
+    // Bias 0.005, noise 0.095 at 1 s: 0.01 takes 0.5 + 1 * 0.095 / 0.005.
+    rows.retain(|row| row.strategy != name || row.passes == 1);
+    for row in rows.iter_mut().filter(|row| row.strategy == name) {
+        (row.setup_cpu_s, row.cpu_s, row.rel_mse) = (0.5, 1.0, 0.1);
+    }
+    let mut at = |mean: f64| {
+        let summary = run.scenes[0].summaries.iter_mut().find(|s| s.strategy == name).expect("there");
+        summary.rel_bias2 = Interval { mean, half_width: 0.001 };
+        cells(&run, &rows, name)[TO_HUNDREDTH].clone()
+    };
+    assert_eq!([0.005, 0.01, -0.005, f64::NAN].map(&mut at), ["~19.5", "never", "~10.5", "–"]);
+}
+
+#[test]
+fn a_bias_that_may_be_zero_has_no_balance() {
+    let (mut run, rows) = record();
+    let name = "range:cutoff=0.5";
+    let mut at = |mean: f64, half_width: f64| {
+        let summary = run.scenes[0].summaries.iter_mut().find(|s| s.strategy == name).expect("there");
+        summary.rel_bias2 = Interval { mean, half_width };
+        cells(&run, &rows, name)[BALANCE].clone()
+    };
+    assert_eq!(at(0.013, 0.012), "9.23");
+    assert_eq!(at(0.013, 0.014), "> 1.41");
+    assert_eq!(at(-0.013, 0.001), "> 1.41");
+    assert_eq!(at(f64::NAN, f64::INFINITY), "–");
+}
+
+#[test]
+fn of_rows_that_stand_twice_the_last_counts() {
+    let (run, rows) = record();
+    let scene = &run.scenes[0];
+    let wrong = rows.iter().map(|row| Row {
+        cpu_s: 3.0 * row.cpu_s,
+        rel_mse: 7.0 * row.rel_mse,
+        trimmed_share: 0.9,
+        deciles: [5.0; 10],
+        ..row.clone()
+    });
+    let twice: Vec<Row> = wrong.chain(rows.iter().cloned()).collect();
+    assert_eq!(report::page(&run, scene, &twice, "village.svg"), report::page(&run, scene, &rows, "village.svg"));
+    assert!(report::plot(scene, &twice).expect("drawn") == report::plot(scene, &rows).expect("drawn"));
+}
+
+#[test]
+fn too_few_runs_to_see_a_large_bias_are_a_warning() {
+    let (mut run, rows) = record();
+    let mut warned = |lights: u64, detectable: f64| {
+        let scene = &mut run.scenes[0];
+        scene.lights = lights;
+        for summary in scene.summaries.iter_mut().filter(|s| ["uniform", "power", "broken"].contains(&&*s.strategy)) {
+            summary.detectable_bias = detectable;
+        }
+        let table = report::table(&run, &run.scenes[0], &rows);
+        table.lines().find(|line| line.contains("could go unseen")).map(str::to_owned)
+    };
+    assert_eq!(warned(10_000, 0.05), None);
+    assert_eq!(warned(10_001, 0.06), None);
+    let line = warned(10_000, 0.06).expect("a warning");
+    assert!(line.starts_with("  warning: ") && line.ends_with(": `power`, `uniform`"), "{line}");
+}
+
 #[test]
 fn columns_that_cannot_vary_are_left_out() {
     let (mut run, rows) = record();

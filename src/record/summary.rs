@@ -95,7 +95,10 @@ pub struct Summary {
     /// The bias of the image's mean that a 5 % test would find with 80 % power, as a share of it.
     #[serde(with = "number")]
     pub detectable_bias: f64,
-    /// V: variance in units of relMSE times CPU seconds, set-up left out.
+    /// V: variance in units of relMSE times CPU seconds, set-up left out, both at the largest budget ([`passes`](Self::passes)).
+    ///
+    /// It belongs to that budget: arriving at a receiver is paid once per block of passes, so that CPU time is affine in the
+    /// passes and V is not the same at every budget.
     #[serde(with = "number")]
     pub variance_seconds: f64,
     /// Work, from the counting pass.

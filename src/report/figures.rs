@@ -1,28 +1,65 @@
 //! What follows from the recorded figures of a strategy: how soon it gets somewhere, and where it stands among the others.
 
-use crate::record::{Claim, Summary};
+use super::curve::{Curve, Point};
+use crate::record::{Claim, Interval, Summary};
 use std::cmp::Ordering;
 
-/// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative.
+/// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative; NaN where
+/// it is not known.
 pub fn bias2(summary: &Summary) -> f64 {
     match summary.claim {
+        // `max` would turn NaN, a bias not known, into 0.
+        Claim::Biased { .. } if summary.rel_bias2.mean.is_nan() => f64::NAN,
         Claim::Biased { .. } => summary.rel_bias2.mean.max(0.0),
         Claim::Unbiased | Claim::Floor | Claim::Ceiling => 0.0,
     }
 }
 
-/// CPU seconds, set-up included, until relMSE is `error`: set-up + V / (error - b^2), and at least one pass; infinite for never,
-/// NaN where V is not known.
-pub fn time_to(summary: &Summary, error: f64) -> f64 {
-    let room = error - bias2(summary);
-    if room <= 0.0 || summary.claim == Claim::Floor {
-        return f64::INFINITY;
+/// When a strategy gets to an error, in CPU seconds, set-up included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Arrival {
+    /// At its first budget, or between two of them.
+    Measured(f64),
+    /// After its largest budget, if noise goes on falling as 1 / time.
+    Extrapolated(f64),
+    /// Its bias alone is that large.
+    Never,
+    /// There are no rows, or the bias is not known.
+    Unknown,
+}
+
+/// When `curve`, the one of `summary`, gets to a relMSE of `error`.
+///
+/// Read off the measured curve and not from V: CPU time is affine in the passes, so that V / error may lie below the time of
+/// the first pass, before which there is no image.
+pub(super) fn time_to(summary: &Summary, curve: &Curve, error: f64) -> Arrival {
+    let points = &curve.points;
+    match points.iter().position(|point| point.error <= error) {
+        Some(0) => Arrival::Measured(points[0].seconds),
+        Some(first) => Arrival::Measured(between(&points[first - 1], &points[first], error)),
+        None => points.last().map_or(Arrival::Unknown, |last| beyond(last, bias2(summary), error)),
     }
-    if summary.variance_seconds.is_nan() {
-        return f64::NAN;
+}
+
+/// The time of `error` on a straight line from `above` to `below` in the log-log plot; that of `below` where there is no such line.
+fn between(above: &Point, below: &Point, error: f64) -> f64 {
+    if !above.is_drawable() || !below.is_drawable() {
+        return below.seconds;
     }
-    let one_pass = summary.cpu_s / f64::from(summary.passes.max(1));
-    summary.setup_cpu_s + (summary.variance_seconds / room).max(one_pass)
+    let share = (above.error / error).ln() / (above.error / below.error).ln();
+    above.seconds * (below.seconds / above.seconds).powf(share)
+}
+
+/// The time of `error`, which is less than that of `last`, the largest budget.
+fn beyond(last: &Point, bias2: f64, error: f64) -> Arrival {
+    if bias2.is_nan() {
+        return Arrival::Unknown;
+    }
+    if error <= bias2 {
+        return Arrival::Never;
+    }
+    let sampling = last.seconds - last.setup;
+    Arrival::Extrapolated(last.setup + sampling * (last.error - bias2) / (error - bias2))
 }
 
 /// The CPU seconds of sampling at which bias and noise weigh the same.
@@ -30,17 +67,22 @@ pub fn time_to(summary: &Summary, error: f64) -> f64 {
 pub enum Balance {
     /// t* = V / b^2.
     At(f64),
-    /// No bias was seen up to the longest time measured.
+    /// No bias was told from 0 up to the longest time measured.
     After(f64),
 }
 
-/// Where bias and noise of a biased strategy weigh the same; `None` for the others.
+/// Where bias and noise of a biased strategy weigh the same; `None` for the others, and where b^2 is not known.
 pub fn balance(summary: &Summary) -> Option<Balance> {
     if !matches!(summary.claim, Claim::Biased { .. }) {
         return None;
     }
-    let bias2 = summary.rel_bias2.mean;
-    Some(if bias2 <= 0.0 { Balance::After(summary.cpu_s) } else { Balance::At(summary.variance_seconds / bias2) })
+    let Interval { mean, half_width } = summary.rel_bias2;
+    if mean.is_nan() {
+        return None;
+    }
+    // A b^2 that may be 0 would give a t* that may be anything.
+    let seen = mean - half_width > 0.0;
+    Some(if seen { Balance::At(summary.variance_seconds / mean) } else { Balance::After(summary.cpu_s) })
 }
 
 /// Whether the strategy ran to its end, so that its numbers mean something.

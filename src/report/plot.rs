@@ -3,7 +3,7 @@
 //! The file names fonts and holds none; whoever shows it chooses them. Coordinates are whole pixels, so that the same rows
 //! give the same bytes everywhere.
 
-use super::curve::Curve;
+use super::curve::{Curve, Point, rows_of};
 use super::figures;
 use super::mark::Mark;
 use crate::base::error::{Error, Result};
@@ -33,7 +33,10 @@ const FAINT: RGBColor = RGBColor(110, 110, 110);
 /// A strategy as it is drawn.
 struct Entry<'a> {
     summary: &'a Summary,
+    /// Only what logarithmic axes can show.
     curve: Curve,
+    /// Whether there are points with an error of exactly 0.
+    exact: bool,
     mark: Mark,
 }
 
@@ -44,6 +47,7 @@ struct Entry<'a> {
 pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
     let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
     summaries.sort_by(|a, b| figures::order(a, b));
+    let rows = rows_of(rows, &scene.name);
     let entries: Vec<Entry> = summaries
         .into_iter()
         .map(|summary| {
@@ -51,8 +55,10 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
             let coloured = |s: &Summary| !matches!(s.claim, Claim::Floor | Claim::Ceiling);
             let before = scene.summaries.iter().filter(|s| coloured(s) && s.strategy < summary.strategy);
             let nth = before.count();
-            let curve = Curve::of(rows, &scene.name, &summary.strategy);
-            Entry { summary, curve, mark: Mark::new(&summary.claim, nth) }
+            let mut curve = Curve::of(&rows, &summary.strategy);
+            let exact = curve.is_exact();
+            curve.points.retain(Point::is_drawable);
+            Entry { summary, curve, exact, mark: Mark::new(&summary.claim, nth) }
         })
         .collect();
     let mut svg = String::new();
@@ -228,7 +234,7 @@ fn legend_lines(entries: &[Entry]) -> Vec<LegendLine> {
     if entries.iter().any(|e| e.mark.hollow && !e.curve.points.is_empty()) {
         push(34, "dashed and hollow: biased", None);
     }
-    for (at, entry) in entries.iter().filter(|e| e.curve.exact).enumerate() {
+    for (at, entry) in entries.iter().filter(|e| e.exact).enumerate() {
         push(if at == 0 { 25 } else { 19 }, &format!("exact, not drawn: {}", entry.summary.strategy), None);
     }
     lines

@@ -3,7 +3,8 @@
 //! Four tables: error against time (the answer), other measures of error, error by brightness, work. A column stands only
 //! where it can differ from row to row: no bias columns without biased strategies, no early outs that the scene cannot cause.
 
-use super::figures::{self, Balance};
+use super::curve::{Curve, rows_of};
+use super::figures::{self, Arrival, Balance};
 use super::number::{NONE, bytes, digits, error, grouped, percent, short, signed_percent, with_share};
 use super::sheet::{Column, Sheet};
 use crate::record::{Claim, Row, RunRecord, SceneRecord, Summary};
@@ -61,6 +62,7 @@ pub(super) fn warnings(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
         warnings.push("not finished: some strategies or runs are missing".to_owned());
     }
     warnings.extend(doubt(scene));
+    warnings.extend(blindness(scene));
     warnings
 }
 
@@ -75,20 +77,36 @@ fn doubt(scene: &SceneRecord) -> Option<String> {
     })
 }
 
+/// Strategies measured in so few or so noisy runs that a large bias of theirs would go unseen.
+fn blindness(scene: &SceneRecord) -> Option<String> {
+    // 10,000, the size of `downtown`: on larger scenes runs are dear, and the column of detectable bias has to do.
+    if scene.lights > 10_000 {
+        return None;
+    }
+    // 5 % of the image mean: what a strategy that drops one of twenty equal lights loses.
+    let blind = |s: &&Summary| figures::measured(s) && s.detectable_bias > 0.05;
+    let mut blind: Vec<&Summary> = scene.summaries.iter().filter(blind).collect();
+    blind.sort_by(|a, b| figures::order(a, b));
+    let names: Vec<String> = blind.iter().map(|s| format!("`{}`", s.strategy)).collect();
+    (!names.is_empty())
+        .then(|| format!("a bias of 5 % of the image mean could go unseen, for want of runs: {}", names.join(", ")))
+}
+
 /// All tables of a scene.
 pub(super) fn sheets(scene: &SceneRecord, rows: &[Row]) -> Vec<Sheet> {
     let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
     summaries.sort_by(|a, b| figures::order(a, b));
-    let rows: Vec<&Row> = rows.iter().filter(|r| r.scene == scene.name && r.error.is_none()).collect();
+    let rows = rows_of(rows, &scene.name);
     let measured: Vec<&Summary> = summaries.iter().copied().filter(|s| figures::measured(s)).collect();
-    let mut sheets = vec![against_time(&summaries)];
+    let mut sheets = vec![against_time(&summaries, &rows)];
     if !measured.is_empty() {
         sheets.extend([other_measures(&measured, &rows), by_brightness(&measured, &rows), work(&measured)]);
     }
     sheets
 }
 
-fn against_time(summaries: &[&Summary]) -> Sheet {
+fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
+    let arrival = |s: &Summary, error| figures::time_to(s, &Curve::of(rows, &s.strategy), error);
     let is_biased = |s: &Summary| matches!(s.claim, Claim::Biased { .. });
     let mut columns = Vec::new();
     if summaries.iter().any(|s| s.claim != Claim::Unbiased) {
@@ -96,8 +114,8 @@ fn against_time(summaries: &[&Summary]) -> Sheet {
     }
     columns.extend([
         Column::new("V", |s| unless_floor(s, short(s.variance_seconds))),
-        Column::new("s to\n0.1", |s| time(s, 0.1)),
-        Column::new("s to\n0.01", |s| time(s, 0.01)),
+        Column::new("s to\n0.1", move |s| time(s, arrival(s, 0.1))),
+        Column::new("s to\n0.01", move |s| time(s, arrival(s, 0.01))),
         Column::new("relMSE", |s| error(s.rel_mse)),
     ]);
     if summaries.iter().any(|s| is_biased(s)) {
@@ -115,11 +133,25 @@ fn against_time(summaries: &[&Summary]) -> Sheet {
         Column::new("CPU s", |s| short(s.cpu_s)),
     ]);
     let mut below = vec![
-        "V is relMSE variance x CPU seconds; seconds to a relMSE of 0.1 are set-up + V / (0.1 - b²), at least one pass."
+        "V is relMSE variance x CPU seconds at the budget shown (passes). It belongs to that budget: some costs are per block of passes."
             .to_owned(),
+        "s to 0.1: CPU seconds, set-up included, until relMSE is 0.1 on the measured curve; the first pass is the soonest.".to_owned(),
     ];
+    let is_extrapolated = |s: &Summary| [0.1, 0.01].iter().any(|&e| matches!(arrival(s, e), Arrival::Extrapolated(_)));
+    if summaries.iter().any(|s| s.claim != Claim::Floor && figures::measured(s) && is_extrapolated(s)) {
+        let (law, unbiased) = if summaries.iter().any(|s| is_biased(s)) {
+            ("(relMSE - b²) / (0.1 - b²)", ", b² = 0 if unbiased")
+        } else {
+            ("relMSE / 0.1", "")
+        };
+        below
+            .push(format!("~: not reached; extrapolated from the largest budget as set-up + CPU s x {law}{unbiased}."));
+    }
     if summaries.iter().any(|s| is_biased(s)) {
         below.push("b² is squared bias in units of relMSE; from t* = V / b² on, bias outweighs noise.".to_owned());
+        below.push(
+            "t* > the longest time measured: b² cannot be told from 0. never: b² alone is that large.".to_owned(),
+        );
     }
     if summaries.iter().any(|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
@@ -194,9 +226,14 @@ fn claim(summary: &Summary) -> &'static str {
     }
 }
 
-fn time(summary: &Summary, error: f64) -> String {
-    let seconds = figures::time_to(summary, error);
-    unless_floor(summary, if seconds == f64::INFINITY { "never".to_owned() } else { short(seconds) })
+fn time(summary: &Summary, arrival: Arrival) -> String {
+    let text = match arrival {
+        Arrival::Measured(seconds) => short(seconds),
+        Arrival::Extrapolated(seconds) => format!("~{}", short(seconds)),
+        Arrival::Never => "never".to_owned(),
+        Arrival::Unknown => NONE.to_owned(),
+    };
+    unless_floor(summary, text)
 }
 
 /// The floor computes no image: what says how soon it gets there means nothing.
