@@ -129,6 +129,36 @@ fn a_spots_intensity_over_the_sphere_adds_up_to_its_cone_flux() {
 }
 
 #[test]
+fn narrow_spots_keep_their_peak_and_their_flux() {
+    // An axis off the coordinate axes: its dot products round. Half-angles in degrees, down to the recipes' least.
+    let axis = Vec3::new(0.36, -0.48, 0.8);
+    let (across, along) = (axis.any_orthonormal_vector(), axis.cross(axis.any_orthonormal_vector()));
+    for (inner, outer) in [(0.0f64, 0.5f64), (0.4, 0.5), (0.0, 1.0), (0.5, 1.0), (0.0, 2.0), (1.9, 2.0)] {
+        let [cos_inner, cos_outer] = [inner, outer].map(|angle| angle.to_radians().cos() as f32);
+        let light = Light::from(Shape::Spot { position: Vec3::ZERO, axis, intensity: Vec3::ONE, cos_inner, cos_outer });
+        // Intensity towards w, measured by a receiver 1 m away that faces the light.
+        let intensity = |cosine: f64, angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let ring = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
+            let w = axis.as_dvec3() * cosine + (across.as_dvec3() * cos + along.as_dvec3() * sin) * ring;
+            let w = w.normalize().as_vec3();
+            let arrival = contribution::<0b1111>(&light, [0.0; 2], &receiver(w, -w));
+            arrival.map_or(0.0, |arrival| f64::from(arrival.radiance.x)) * PI / f64::from(ALBEDO)
+        };
+        let peak = intensity(1.0, 0.0);
+        assert!((peak - 1.0).abs() < 0.01, "cone {inner}..{outer} degrees: {peak} cd of 1 cd on the axis");
+        // Midpoints in the cosine over twice the cone's cap, golden angles around the axis.
+        let (n, cap) = (100_000, 2.0 * (1.0 - outer.to_radians().cos()));
+        let sum: f64 = (0..n)
+            .map(|i| intensity(1.0 - cap * (f64::from(i) + 0.5) / f64::from(n), f64::from(i) * 2.399_963_229_728_653))
+            .sum();
+        let (flux, wanted) = (sum / f64::from(n) * cap * 2.0 * PI, f64::from(cone_flux(cos_inner, cos_outer)));
+        println!("cone {inner}..{outer}: peak {peak}, flux ratio {}", flux / wanted);
+        assert!((flux / wanted - 1.0).abs() < 0.01, "cone {inner}..{outer} degrees: {flux} lm for {wanted} lm");
+    }
+}
+
+#[test]
 fn a_closed_box_keeps_light_out_and_in() {
     let inside = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(-1.9, 1.9, 0.0), Vec3::new(1.5, -1.0, 0.0)];
     let outside = [Vec3::new(6.0, 0.0, -1.0), Vec3::new(-7.0, 7.0, -1.0)];

@@ -3,8 +3,12 @@
 
 use citylights::base::error::Error;
 use citylights::scene::Scene;
-use citylights::scene::light::{Kind, Shape};
+use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::light::{Kind, Light, Shape};
 use citylights::scene::recipe::{Overrides, load, parse};
+use citylights::strategy::{BuildContext, registry};
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use std::hash::{DefaultHasher, Hasher};
@@ -259,6 +263,73 @@ fn enormous_numbers_are_refused_with_the_allowed_range() {
         "city.lights",
         &["at most 20000000"],
     );
+}
+
+#[test]
+fn a_city_of_too_many_buildings_is_refused() {
+    // 92,000 blocks, few enough, with 128 lots each.
+    let crowded = "lights = 1.7e6\ndensity = 100\nblock = 400";
+    let text = GOOD.replace("lights = 700", crowded).replace("[city.buildings]", "[city.buildings]\nlot = 12");
+    refused(&text, Some(12), "city.lights", &["boxes of buildings", "at most 4000000", "a longer `lot`"]);
+}
+
+#[test]
+fn names_that_would_break_a_table_or_a_path_are_refused() {
+    let named = |name: &str| GOOD.replacen("corner", name, 1);
+    let longest = "é".repeat(64);
+    for name in ["a", "first-night 2.5_b", "Zürich", "東京 (夜)", &longest] {
+        assert_eq!(read(&named(name)).expect("a good name").name(), name);
+    }
+    let asked = ["1 to 64 printable", "without <"];
+    for name in ["", " ", "a\\nb", "a\\tb", "a\\u0000", "a\\u202eb", "a\\u00a0b", "a\\u2028b", "\\\\", "a\\\"b"] {
+        refused(&named(name), Some(1), "name", &asked);
+    }
+    for name in ["<b>", "a|b", "../a", "it's", "a,b", "`a`"] {
+        refused(&named(name), Some(1), "name", &asked);
+    }
+    refused(&named(&"x".repeat(300)), Some(1), "name", &["300 characters", "1 to 64"]);
+}
+
+#[test]
+fn cones_too_narrow_for_f32_are_refused() {
+    wrong(GOOD, "outer = 40", "outer = 0.49", "light[1].outer", &["0.5 and 90", "degrees"]);
+    wrong(GOOD, "inner = 10", "inner = 39.95", "light[1].inner", &["at least 0.1 below"]);
+    for (inner, outer) in [("39.9", "40"), ("0", "0.5"), ("0.4", "0.5"), ("0.7", "0.8"), ("89.9", "90")] {
+        let text = GOOD.replace("inner = 10", &format!("inner = {inner}"));
+        read(&text.replace("outer = 40", &format!("outer = {outer}"))).expect("cones 0.1 degrees apart");
+    }
+}
+
+#[test]
+fn influence_ends_at_twice_the_scenes_diameter() {
+    let sun = "[[light]]\nkind = \"triangle\"\ncorners = [[0, 0, 9], [2e6, 0, 9], [0, 2e6, 9]]\nradiance = 1e15\n";
+    let lamp = "[[light]]\nkind = \"point\"\nposition = [0, 0, 5]\nintensity = 1\ncolour = [0, 1, 0]\n";
+    for ev100 in [-60.0, -1e3, 1e3] {
+        let overrides = Overrides { ev100: Some(ev100), ..Overrides::default() };
+        let scene =
+            parse(&format!("{PLAIN}{sun}{lamp}"), Path::new("test.toml"), &overrides).expect("extreme, but legal");
+        let cutoff = Cutoff::new(&scene, 0.5, Transfer::Linear);
+        let volume = |light: &Light| cutoff.volume(light).expect("a local light");
+        for volume in scene.lights().iter().map(volume) {
+            assert!(volume.radius2.sqrt() <= 4.0 * scene.radius() * 1.000_001, "{volume:?}");
+            let (low, high) = volume.bounds();
+            assert!(low.is_finite() && high.is_finite(), "{low}..{high}");
+            let lit = scene
+                .surfaces()
+                .iter()
+                .flat_map(|s| s.corners)
+                .all(|corner| corner.distance_squared(volume.centre) <= volume.radius2);
+            assert!(lit || ev100 > 0.0, "all of the scene is in range of {volume:?}");
+        }
+        let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+        for name in ["influence", "influence-pick", "influence-tail"] {
+            let strategy = registry::parse(name).expect("a strategy");
+            let built = strategy.build(BuildContext { stage: &stage, seed: 1 });
+            if let Err(error) = built {
+                panic!("{name} at EV100 {ev100}: {error}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -23,7 +23,13 @@ pub enum Transfer {
 pub struct Cutoff {
     /// `exposure * albedo / (pi * T)` per channel, in m^2/cd: squared range of a light of 1 cd.
     range2_per_candela: Vec3,
+    /// No radius is longer, in m: twice the scene's diameter, so that a volume at the limit holds the whole scene.
+    /// Without it a dark enough exposure or a bright enough light makes radii, and sums over them, infinite.
+    longest: f32,
 }
+
+/// Radii end here in scenes beyond all measure: its square is finite in f32.
+const LONGEST: f32 = 1e18;
 
 impl Cutoff {
     /// The cut-off at `steps` display steps (the lecture's is 0.5) of a scene.
@@ -34,12 +40,15 @@ impl Cutoff {
         };
         let threshold = steps / 255.0 / slope;
         let albedo = scene.materials().iter().fold(Vec3::ZERO, |most, material| most.max(material.albedo));
-        Self { range2_per_candela: albedo * (scene.exposure() / (PI * threshold)) }
+        Self {
+            range2_per_candela: albedo * (scene.exposure() / (PI * threshold)).min(f32::MAX),
+            longest: (4.0 * scene.radius()).min(LONGEST),
+        }
     }
 
     /// The volume in which `light` is in range; `None` for a directional light, which is in range everywhere.
     pub fn volume(&self, light: &Light) -> Option<Influence> {
-        let range2 = (self.range2_per_candela * light.peak_intensity()).max_element();
+        let range2 = (self.range2_per_candela * light.peak_intensity()).max_element().min(self.longest * self.longest);
         match light.kind() {
             Kind::Point => Some(Influence { centre: light.position, radius2: range2, axis: Vec3::ZERO }),
             Kind::Spot => Some(Influence { centre: light.position, radius2: range2, axis: light.a }),
@@ -47,7 +56,7 @@ impl Cutoff {
                 let corners = light.corners();
                 let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
                 let bound = corners.iter().map(|c| c.distance(centre)).fold(0.0, f32::max);
-                let radius = bound + range2.sqrt();
+                let radius = (bound + range2.sqrt()).min(self.longest);
                 Some(Influence { centre, radius2: radius * radius, axis: light.c.normalize_or_zero() })
             }
             Kind::Directional => None,

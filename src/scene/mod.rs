@@ -220,18 +220,6 @@ impl Scene {
         &self.notes
     }
 
-    /// The same scene with another camera.
-    pub fn with_camera(mut self, camera: Camera) -> Self {
-        self.camera = camera;
-        self
-    }
-
-    /// The same scene at another exposure value.
-    pub fn with_ev100(mut self, ev100: f32) -> Self {
-        self.ev100 = Some(ev100);
-        self
-    }
-
     /// The corners of the box around all surfaces and all lights that have a place.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let surfaces = self.surfaces.iter().flat_map(|s| s.corners);

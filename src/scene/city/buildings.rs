@@ -60,6 +60,37 @@ impl Plan for Buildings {
     }
 }
 
+impl Buildings {
+    /// How many boxes the buildings of a block with this side have, about and rather too many, where all blocks are as
+    /// long as the longest.
+    pub(super) fn boxes(&self, side: f64) -> f64 {
+        let lots = lots(side, self.lot) as f64;
+        let edge = if lots > 1.0 { 4.0 * (lots - 1.0) } else { 1.0 };
+        // Five of six buildings are lower than one standard deviation above the median.
+        let tiers = 1 + steps(floors((self.height * self.spread.exp()).min(self.tallest))).len();
+        edge * (1.0 - self.gaps) * tiers as f64
+    }
+}
+
+/// How many lots lie along a side of a block's land.
+fn lots(length: f64, lot: f64) -> usize {
+    ((length / lot).round() as usize).max(1)
+}
+
+/// Whole floors: which also keeps the last bits of `ln` and `exp` out of the result.
+fn floors(height: f64) -> u32 {
+    ((height - GROUND_FLOOR) / FLOOR).round().max(1.0) as u32
+}
+
+/// The shares of its floors at which a building steps back.
+fn steps(floors: u32) -> &'static [f64] {
+    match floors {
+        0..=11 => &[],
+        12..=24 => &[0.65],
+        _ => &[0.45, 0.8],
+    }
+}
+
 /// A box of a building, on the ground or on the one below.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tier {
@@ -152,8 +183,7 @@ pub(super) fn build(plan: &City, seed: u64) -> Town {
 
 /// The buildings on a block's land.
 fn fill(plan: &Buildings, low: DVec2, high: DVec2, stream: &mut Stream) -> Vec<Building> {
-    let count = |length: f64| ((length / plan.lot).round() as usize).max(1);
-    let (columns, rows) = (count(high.x - low.x), count(high.y - low.y));
+    let (columns, rows) = (lots(high.x - low.x, plan.lot), lots(high.y - low.y, plan.lot));
     let cut = |low: f64, high: f64, i: usize, n: usize| round::metres(low + (high - low) * i as f64 / n as f64);
     let mut out = Vec::new();
     for row in 0..rows {
@@ -176,18 +206,12 @@ fn raise(plan: &Buildings, low: DVec2, high: DVec2, open: [bool; 4], stream: &mu
         .expect("the plan's spread is finite and not negative")
         .sample(stream.generator())
         .min(plan.tallest);
-    // Whole floors: which also keeps the last bits of `ln` and `exp` out of the result.
-    let floors = ((height - GROUND_FLOOR) / FLOOR).round().max(1.0) as u32;
-    let steps: &[f64] = match floors {
-        0..=11 => &[],
-        12..=24 => &[0.65],
-        _ => &[0.45, 0.8],
-    };
+    let floors = floors(height);
     let mut tiers = vec![];
     let (mut low, mut high) = (low.extend(KERB), high.extend(0.0));
     let mut open = open;
     let mut done = 0;
-    for &share in steps.iter().chain(&[1.0]) {
+    for &share in steps(floors).iter().chain(&[1.0]) {
         let until = (f64::from(floors) * share).round() as u32;
         let ground = if done == 0 { GROUND_FLOOR } else { 0.0 };
         high.z = low.z + ground + FLOOR * f64::from(until - done);

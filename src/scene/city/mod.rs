@@ -6,8 +6,8 @@
 //! apart, street canyons, and a heavy tail of floodlights.
 //!
 //! The same plan and seed give the same bytes on any number of threads: each street, block and building draws from a
-//! stream of its own and results are joined in order. Positions are multiples of 2^-10 m and intensities of 10^-4
-//!, because the last bit of `ln`, `exp` and `sin` differs between platforms.
+//! stream of its own and results are joined in order. Positions are multiples of 2^-10 m and intensities of 10^-4,
+//! because the last bit of `ln`, `exp` and `sin` differs between platforms.
 //! Arrays keep the degeneracies of real ones: lamps exactly collinear, window grids exactly coplanar with equal
 //! powers, signs back to back.
 
@@ -146,10 +146,7 @@ pub fn generate(plan: &City, seed: u64) -> Result<Grown> {
             ));
         }
     } else if grown.lights.len() != wanted {
-        grown.notes.push(format!(
-            "the city has no windows to make up the number of lights: it has {}, and the {wanted} asked for set its extent",
-            grown.lights.len()
-        ));
+        grown.notes.push(format!("the city has no windows: {} lights on the extent of {wanted}", grown.lights.len()));
     }
     Ok(grown)
 }

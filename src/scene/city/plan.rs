@@ -129,6 +129,9 @@ impl Plan for City {
 /// density are 68,000.
 const MOST_LIGHTS: u64 = 10_000_000;
 const MOST_BLOCKS: f64 = 100_000.0;
+/// Most boxes that its buildings may have: ten surfaces each, 1.6 GB of them. The 10^7 lights at the default density
+/// have 800,000, the million of the shipped recipe 70,000.
+const MOST_BOXES: f64 = 4e6;
 
 impl City {
     /// Side of a block and one street at their mean widths, in m.
@@ -156,6 +159,19 @@ impl City {
                     "{} lights at this density would spread over {blocks:.0} blocks; at most {MOST_BLOCKS} are allowed: \
                      a higher density, longer blocks or fewer lights",
                     self.lights
+                ),
+            );
+        }
+        let land = self.block[1] - 2.0 * self.pavement;
+        let built = self.buildings.as_ref().map_or(0.0, |p| (1.0 - self.squares) * p.boxes(land));
+        let boxes = blocks * built;
+        if boxes > MOST_BOXES {
+            return refuse(
+                "lights",
+                self.lights.to_string(),
+                format!(
+                    "the city would have about {boxes:.0} boxes of buildings on {blocks:.0} blocks; at most {MOST_BOXES} \
+                     are allowed: fewer lights, a higher density, lower buildings or a longer `lot`"
                 ),
             );
         }

@@ -3,7 +3,7 @@
 //! | `kind` | where | how bright |
 //! |---|---|---|
 //! | `"point"` | `position` | `intensity` in cd or `flux` in lm |
-//! | `"spot"` | `position`, `target`, half-angles `inner` (0) and `outer` (45) in degrees | `intensity` at the peak or `flux` |
+//! | `"spot"` | `position`, `target`, half-angles `outer` (45; 0.5 to 90) and `inner` (0; at least 0.1 less) in degrees | `intensity` at the peak or `flux` |
 //! | `"directional"` | `towards`, a vector to the light | `irradiance` in lx on a surface that faces it |
 //! | `"triangle"` | `corners`, counter-clockwise from the side that emits | `radiance` in cd/m^2 |
 //!
@@ -19,6 +19,11 @@ use std::f64::consts::PI;
 
 /// Greatest value of any photometric quantity: above that f32 would overflow on the way to a pixel.
 const BRIGHTEST: f64 = 1e15;
+
+/// Least outer half-angle of a spot, in degrees: the cosines of its cone are 640 steps of f32.
+const NARROWEST: f64 = 0.5;
+/// Least difference of a spot's half-angles, in degrees; less a little, for the rounding of 0.8 - 0.7.
+const RAMP: f64 = 0.1 - 1e-9;
 
 /// The fields of all kinds; each kind then refuses those of the others.
 const FIELDS: [&str; 13] = [
@@ -96,11 +101,11 @@ fn spot(table: &Table) -> Result<Placed> {
     table.only(&["kind", "position", "target", "inner", "outer", "intensity", "flux", "colour", "kelvin"])?;
     let position = table.needed_vector("position", FARTHEST)?;
     let axis = direction(table, "target", table.needed_vector("target", FARTHEST)? - position)?;
-    let outer = table.number("outer", 0.1..=90.0, "degrees")?.unwrap_or(45.0);
+    let outer = table.number("outer", NARROWEST..=90.0, "degrees")?.unwrap_or(45.0);
     let inner = table.number("inner", 0.0..=90.0, "degrees")?.unwrap_or(0.0);
     // The cosine of 90 degrees is 6e-17 in f64 and below 0 in f32 arithmetic elsewhere: hold it at 0.
     let [cos_inner, cos_outer] = [inner, outer].map(|angle| angle.to_radians().cos().max(0.0) as f32);
-    if inner >= outer || cos_inner <= cos_outer {
+    if outer - inner < RAMP {
         return Err(table.wrong(
             "inner",
             format!(

@@ -7,7 +7,7 @@
 //!
 //! | table | fields (defaults in parentheses) |
 //! |---|---|
-//! | top level | `name`, `version = 1`, `seed` (1), `ev100` (none: exposure 1), `origin` (`[0, 0, 0]`, f64) |
+//! | top level | `name` (1 to 64 characters), `version = 1`, `seed` (1), `ev100` (none: exposure 1), `origin` (`[0, 0, 0]`, f64) |
 //! | `[camera]` | `position`, `target`, `fov` (60, vertical), `resolution` (`[240, 135]`) |
 //! | `[city]` | [`City`], with a table per part |
 //! | `[ground]` | `size` (one number or `[x, y]`), `centre` (`[0, 0]`), `height` (0), `material` |
@@ -51,6 +51,11 @@ const LARGEST_FILE: u64 = 16 << 20;
 const MOST_BULBS: f64 = 1e7;
 /// Coordinates lie within this distance of the frame, in m.
 const FARTHEST: f64 = 1e7;
+
+/// Most characters of a scene's name.
+const LONGEST_NAME: usize = 64;
+/// What a scene's name may not hold, beside what is not printable: it would break a path, a table or a page.
+const NOT_IN_NAMES: [char; 9] = ['<', '>', '|', '/', '\\', '"', '\'', '`', ','];
 
 const TOP: [&str; 14] = [
     "name",
@@ -98,7 +103,7 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     if top.needed_count("version", 0..=u64::MAX >> 1)? != 1 {
         return Err(top.wrong("version", "this program reads version 1 of recipes: `version = 1` is asked for"));
     }
-    let name = top.needed_text("name", "the scene's name")?;
+    let name = scene_name(&top)?;
     let seed = top.count("seed", 0..=u64::MAX >> 1)?.unwrap_or(1);
     let seed = overrides.seed.unwrap_or(seed);
     let ev100 = top.number("ev100", -30.0..=40.0, "EV at ISO 100")?.map(|ev| ev as f32);
@@ -151,6 +156,26 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
         Error::Invalid(message) => source.error(None, "", message),
         other => other,
     })
+}
+
+/// The scene's name, which stands in tables, file names and reports.
+fn scene_name(top: &Table) -> Result<String> {
+    let name = top.needed_text("name", "the scene's name")?;
+    let length = name.chars().count();
+    // Whatever is not printable, a quote or a backslash would be escaped.
+    let plain = name.escape_debug().eq(name.chars()) && !name.contains(NOT_IN_NAMES);
+    if plain && (1..=LONGEST_NAME).contains(&length) && !name.trim().is_empty() {
+        return Ok(name);
+    }
+    let shown: String = name.chars().take(LONGEST_NAME).collect();
+    Err(top.wrong(
+        "name",
+        format!(
+            "\"{}\" of {length} characters is given; 1 to {LONGEST_NAME} printable ones are asked for, not all blank, \
+             without < > | / \\ , and quotes",
+            shown.escape_debug()
+        ),
+    ))
 }
 
 fn grow(table: &Table, seed: u64) -> Result<Grown> {
