@@ -97,9 +97,9 @@ impl Pilot {
 
     /// The budgets that fit, in passes: 1, 2, 4 and so on; none if one pass is too long.
     pub fn ladder(&self, budget: Budget, runs: u32) -> Vec<u32> {
-        // 3 standard errors: Student's 97.5 % and 80 % points at 15 degrees of freedom; twice the variance, since a
-        // pilot mostly misses the rare bright picks.
-        let certain = 2.0 * self.energy_variance * (3.0 / DETECTABLE).powi(2) / f64::from(runs);
+        // 3 standard errors: Student's 97.5 % and 80 % points at 15 degrees of freedom; four times the variance, since
+        // a pilot mostly misses the rare bright picks.
+        let certain = 4.0 * self.energy_variance * (3.0 / DETECTABLE).powi(2) / f64::from(runs);
         let certain = (certain.min(1e9) as u32).next_power_of_two();
         let passes = certain.clamp(budget.usual_passes, budget.most_passes);
         let seconds = |rung: u32| f64::from(rung + 1) * self.arrive_s + f64::from(1u32 << rung) * self.pass_s;
@@ -138,8 +138,8 @@ mod tests {
         // 8 passes in 4 blocks take 0.4 + 0.8 s.
         assert_eq!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 1.25 }, 16), [1, 2, 4, 8]);
         assert!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 0.1 }, 16).is_empty());
-        // A relative variance of 0.45 a pass, with 16 runs: 2 * 0.45 * 3600 / 16 = 202 passes are needed.
-        let noisy = Pilot { arrive_s: 0.0, pass_s: 1e-3, energy_variance: 0.45, ..pilot };
+        // A relative variance of 0.225 a pass, with 16 runs: 4 * 0.225 * 3600 / 16 = 202 passes are needed.
+        let noisy = Pilot { arrive_s: 0.0, pass_s: 1e-3, energy_variance: 0.225, ..pilot };
         assert_eq!(
             noisy.ladder(Budget { usual_passes: 64, most_passes: 1 << 20, seconds: 1.0 }, 16).last(),
             Some(&256)
