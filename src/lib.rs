@@ -1,4 +1,33 @@
 //! Many-light strategies on night cities, measured: error against run time.
+//!
+//! Data flows one way: recipe, [`scene`], receivers ([`visibility`]), [`strategy`], picks, radiance ([`render`]), film,
+//! error (`measure`), rows (`record`), tables (`report`). A module imports only from the floors below its own.
+//!
+//! ```
+//! use citylights::base::random::RunKey;
+//! use citylights::render::{film::Film, passes::Plan};
+//! use citylights::scene::recipe::{self, Overrides};
+//! use citylights::strategy::{BuildContext, registry};
+//! use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
+//!
+//! let text = r#"
+//!     name = "a lamp"
+//!     seed = 1
+//!     version = 1
+//!     camera = { position = [0, -8, 3], target = [0, 0, 0], resolution = [16, 9] }
+//!     ground = { size = 100, material = "paving" }
+//!     materials.paving = { albedo = [0.3, 0.3, 0.3] }
+//!     light = [{ kind = "point", position = [0, 0, 6], intensity = 100 }]
+//! "#;
+//! let scene = recipe::parse(text, "lamp.toml".as_ref(), &Overrides::default())?;
+//! let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+//! let sampler = registry::parse("power:picks=2")?.build(BuildContext { stage: &stage, seed: 1 })?;
+//! let key = RunKey { seed: 1, run: 0 };
+//! let mut film = Film::new(stage.receivers().len());
+//! Plan { stage: &stage, receivers: stage.receivers(), sampler: sampler.as_ref(), key }.run(4, &mut film);
+//! assert!(film.image().iter().all(|radiance| radiance.is_finite()));
+//! # Ok::<(), citylights::base::error::Error>(())
+//! ```
 
 #![forbid(unsafe_code)]
 
