@@ -120,6 +120,9 @@ impl<'a> Spread<'a> {
     /// Mean variance of one run, in units of relMSE; NaN of one run.
     fn rel_variance(&self) -> f64 {
         let k = self.images.len() as f64;
+        if k < 2.0 {
+            return f64::NAN;
+        }
         self.truth.mean_over(|i| Self::variance(self.sums[i], self.squares[i], k) * self.truth.weight(i))
     }
 
@@ -167,5 +170,6 @@ mod tests {
         assert!((bias2.mean * 1.01 - 0.04).abs() < bias2.half_width * 1.5, "{bias2:?}");
         assert!(bias2.half_width < 0.004, "{bias2:?}");
         assert!((spread.rel_variance() * 1.01 * 12.0 - 1.0).abs() < 0.02, "{}", spread.rel_variance());
+        assert!(Spread::of(&truth, &images[..1]).rel_variance().is_nan(), "one run knows nothing of variance");
     }
 }
