@@ -7,6 +7,7 @@ use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::{Scene, Surface};
+use citylights::shading::contribution::contribution;
 use citylights::visibility::occluders::Occluders;
 use citylights::visibility::offset::{Offset, Segment};
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -161,6 +162,19 @@ fn emitters_block_themselves_unless_the_far_end_is_short() {
         println!("{name}: {with:.4} of the light with the far end shortened, {without:.4} without");
         assert!((with - 1.0).abs() < 0.01, "{name}: {with} of the light arrives");
         assert!(without < 0.95, "{name}: an unshortened ray should meet the light itself: {without}");
+        // Ended exactly, rounding decides ray by ray; ended a hair beyond the light, it is black.
+        let stage = stage_with(ground(30.0, lights.clone()), LeaveOut::No, offset.without_far());
+        let (mut rays, mut seen) = (0, 0);
+        for at in stage.receivers() {
+            for light in stage.scene().lights() {
+                let Ok(arrival) = contribution::<0b1111>(light, [0.4, 0.6], at) else { continue };
+                let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+                rays += 1;
+                seen += u32::from(stage.occluders().visible(&Segment { t_max: 1.0 + 1e-5, ..segment }));
+            }
+        }
+        println!("{name}: {seen} of {rays} rays see the light that they end a hair beyond");
+        assert!(rays > 1_000 && seen == 0, "{name}: {seen} of {rays}");
     }
 }
 
