@@ -48,14 +48,7 @@ pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
         for light in triangles(lights) {
             let share = f64::from(importance(light, at)) / total;
             if share > 0.0 {
-                *sum += stratified(
-                    stage,
-                    at,
-                    light,
-                    (f64::from(points) * share).sqrt() as u32 + 1,
-                    &mut rng,
-                    &mut result.rays,
-                );
+                *sum += stratified(stage, at, light, grid_side(points, share), &mut rng, &mut result.rays);
             }
         }
     }
@@ -66,8 +59,13 @@ fn triangles(lights: &[Light]) -> impl Iterator<Item = &Light> {
     lights.iter().filter(|light| light.kind() == Kind::Triangle)
 }
 
-/// Mean over a jittered grid of `side * side` points on a triangle.
-fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
+/// Side of the grid of points that a triangle gets which could add `share` of the light; at least one point.
+pub fn grid_side(points: u32, share: f64) -> u32 {
+    (f64::from(points) * share).sqrt() as u32 + 1
+}
+
+/// Mean contribution, in cd/m^2, over a jittered grid of `side * side` points on a triangle, shadow rays included.
+pub fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
     let step = 1.0 / side as f32;
     let mut sum = DVec3::ZERO;
     for cell in 0..side * side {

@@ -3,7 +3,7 @@
 use crate::base::colour::luminance;
 use crate::base::random::Stream;
 use crate::base::statistics::Moments;
-use crate::render::exact::shadowed;
+use crate::render::exact::{grid_side, shadowed, stratified};
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
@@ -27,27 +27,20 @@ impl Truth {
     pub fn new(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Self {
         let lights = stage.scene().lights();
         let mut rays = 0;
-        let mut evaluate = |light, uv| grey(shadowed(stage, at, light, uv, &mut rays));
         let all = || lights.iter().zip(0u32..).filter(|(light, _)| light.kind() == Kind::Triangle);
         let total: f64 = all().map(|(light, _)| f64::from(importance(light, at))).sum();
         let mut mean = vec![0.0; lights.len()];
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
-            *value = evaluate(light, [0.0; 2]);
+            *value = grey(shadowed(stage, at, light, [0.0; 2], &mut rays));
         }
         let delta = mean.clone();
         let mut triangles = Vec::new();
         for (light, id) in all() {
             let share = f64::from(importance(light, at)) / total.max(f64::MIN_POSITIVE);
-            let side = (f64::from(points) * share).sqrt() as u32 + 1;
+            let side = grid_side(points, share);
             let mut rng = Stream::keyed(&[seed, u64::from(at.pixel), u64::from(id), u64::from_le_bytes(*b"thetruth")]);
-            let values: [f64; REPEATS] = std::array::from_fn(|_| {
-                let cell = |i: u32, u: f32| ((i as f32 + u) / side as f32).min(1.0 - f32::EPSILON);
-                let points = (0..side * side).map(|i| {
-                    let [u, v] = rng.uniform2();
-                    evaluate(light, [cell(i % side, u), cell(i / side, v)])
-                });
-                points.sum::<f64>() / f64::from(side * side)
-            });
+            let values: [f64; REPEATS] =
+                std::array::from_fn(|_| grey(stratified(stage, at, light, side, &mut rng, &mut rays)));
             mean[id as usize] = values.iter().sum::<f64>() / REPEATS as f64;
             triangles.push((id, values));
         }
