@@ -16,8 +16,9 @@
 
 mod common;
 
+use citylights::base::draws::Draws;
 use citylights::base::error::Result;
-use citylights::base::random::{RunKey, Stream};
+use citylights::base::random::RunKey;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::reference::Reference;
 use citylights::measure::target::Target;
@@ -26,6 +27,7 @@ use citylights::render::passes::Plan;
 use citylights::scene::receiver::Receiver;
 use citylights::strategy::parameters::Arguments;
 use citylights::strategy::registry::{Entry, STRATEGIES, parse_from};
+use citylights::strategy::tally::Tally;
 use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Pick, Picks, Strategy};
 use citylights::strategy::{intensity, power, uniform};
 use common::{RELATIVE_ERROR, Reported};
@@ -117,7 +119,7 @@ struct Mutant<S>(S);
 /// [`Mutant`] for a scene.
 struct Thinned<L>(L);
 
-impl<S: Strategy> Strategy for Mutant<S> {
+impl<S: Strategy<Sampler: LightSampler>> Strategy for Mutant<S> {
     const INFO: Info = S::INFO;
     type Sampler = Thinned<S::Sampler>;
 
@@ -133,15 +135,21 @@ impl<S: Strategy> Strategy for Mutant<S> {
 impl<L: LightSampler> LightSampler for Thinned<L> {
     type Scratch = (L::Scratch, Vec<Pick>);
 
-    fn arrive(&self, at: &Receiver, (scratch, _): &mut Self::Scratch) {
-        self.0.arrive(at, scratch);
+    fn arrive<T: Tally>(&self, at: &Receiver, (scratch, _): &mut Self::Scratch, tally: &mut T) {
+        self.0.arrive(at, scratch, tally);
     }
 
-    fn sample(&self, at: &Receiver, rng: &mut Stream, (scratch, picks): &mut Self::Scratch, out: &mut Picks<'_>) {
+    fn sample<T: Tally>(
+        &self,
+        at: &Receiver,
+        draws: &mut Draws,
+        (scratch, picks): &mut Self::Scratch,
+        out: &mut Picks<'_, T>,
+    ) {
         picks.clear();
-        self.0.sample(at, rng, scratch, &mut Picks::new(picks));
+        self.0.sample(at, draws, scratch, &mut Picks::new(picks, out.tally));
         for pick in picks.iter() {
-            if rng.below(4) == 0 {
+            if draws.stream().below(4) == 0 {
                 out.push(pick.light, 4.0 * pick.weight);
             }
         }

@@ -6,11 +6,12 @@ mod common;
 #[path = "common/counting.rs"]
 mod counting;
 
+use citylights::base::draws::Points;
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::Parts;
-use citylights::strategy::erased::PickBuffer;
+use citylights::strategy::erased::{Frame, PickBuffer};
 use citylights::strategy::registry::STRATEGIES;
 use citylights::verify::allocations;
 use citylights::visibility::offset::Offset;
@@ -24,11 +25,13 @@ fn no_strategy_allocates_once_it_is_warm() {
     for entry in STRATEGIES {
         let name = entry.info().name;
         let sampler = sampler(name, &stage);
+        let passes = sampler.most_passes().min(4);
+        let frame = Frame { receivers: stage.receivers(), key: RunKey { seed: 3, run: 0 }, points: Points::default() };
+        let block = sampler.begin(frame, 0..passes);
         let found = allocations(counting::allocations, || {
-            let (mut worker, mut buffer) = (sampler.worker(), PickBuffer::default());
-            let key = RunKey { seed: 3, run: 0 };
+            let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
             let stage = &stage;
-            move || worker.fill(stage.receivers(), 0..4, key, true, &mut buffer)
+            move || worker.fill(stage.receivers(), 0..passes, true, &mut buffer)
         });
         assert_eq!(found, 0, "{name} allocates");
     }

@@ -8,12 +8,14 @@ mod counting;
 
 use citylights::base::colour::luminance;
 use citylights::base::discrete::Cumulative;
+use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::Stream;
 use citylights::scene::light::LightId;
 use citylights::scene::receiver::Receiver;
 use citylights::strategy::parameters::Arguments;
 use citylights::strategy::registry::{Entry, parse_from};
+use citylights::strategy::tally::Tally;
 use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use citylights::verify::{Check, Options, picks_in_range, picks_valid, verify};
 use common::{sixteen, stage};
@@ -78,8 +80,8 @@ static CALLS: AtomicU64 = AtomicU64::new(0);
 impl<const KIND: u8> LightSampler for Sampler<KIND> {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
-        let mut u = rng.uniform64();
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
+        let mut u = draws.choice(0, 1);
         match KIND {
             SCALED => u *= 0.95,
             GLOBAL => u = Stream::keyed(&[CALLS.fetch_add(1, Ordering::Relaxed)]).uniform64(),

@@ -2,6 +2,7 @@
 
 pub mod colour;
 pub mod discrete;
+pub mod draws;
 pub mod error;
 pub mod file;
 pub mod names;

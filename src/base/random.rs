@@ -43,16 +43,22 @@ impl Stream {
         self.0.next_u64()
     }
 
-    /// Uniform in `0..n`; `n` of 0 gives 0. The bias of the multiply-shift is below n / 2^64.
+    /// Uniform in `0..n`; `n` of 0 gives 0.
     #[inline]
     pub fn below(&mut self, n: usize) -> usize {
-        ((u128::from(self.bits()) * n as u128) >> 64) as usize
+        below(self.bits(), n)
     }
 
     /// The generator itself, for the distributions of `rand_distr`.
     pub fn generator(&mut self) -> &mut (impl Rng + use<>) {
         &mut self.0
     }
+}
+
+/// 64 uniform bits as a number uniform in `0..n`. The bias of the multiply-shift is below n / 2^64.
+#[inline]
+pub fn below(bits: u64, n: usize) -> usize {
+    ((u128::from(bits) * n as u128) >> 64) as usize
 }
 
 /// What names the streams of one run: everything random in a run follows from it.
@@ -74,7 +80,7 @@ impl RunKey {
 
 /// A 64-bit hash of a list of words.
 #[inline]
-fn hash(words: &[u64]) -> u64 {
+pub fn hash(words: &[u64]) -> u64 {
     // An arbitrary odd start, so that an all-zero key does not stay zero.
     words.iter().fold(0x9e37_79b9_7f4a_7c15, |state, &word| mix(state ^ word).wrapping_add(0xd1b5_4a32_d192_ed03))
 }

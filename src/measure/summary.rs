@@ -20,6 +20,7 @@ pub fn blank(strategy: &Configured) -> Summary {
         claim: match (info.role, info.claim) {
             (Role::Floor, _) => Claim::Floor,
             (Role::Ceiling, _) => Claim::Ceiling,
+            (Role::Oracle, _) => Claim::Oracle,
             (Role::Choosing, StrategyClaim::Unbiased) => Claim::Unbiased,
             (Role::Choosing, StrategyClaim::Biased(why)) => Claim::Biased { why: why.to_owned() },
         },

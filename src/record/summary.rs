@@ -30,6 +30,8 @@ pub enum Claim {
     Floor,
     /// Takes every light (`all`): no choice, no noise from choosing.
     Ceiling,
+    /// Chooses by what it cannot know without paying for it (`oracle`): the least error of any choice, never timed.
+    Oracle,
 }
 
 /// Work counted in a separate pass of the same code; counts carry over between machines, times do not.

@@ -1,5 +1,7 @@
 //! What became of the samples?
 
+use crate::strategy::tally::{Tally, Work};
+
 /// Counted work of a render. Compiled away in timed runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -17,6 +19,8 @@ pub struct Counts {
     pub behind_surface: u64,
     /// Picks that ended because the receiver is behind the light.
     pub behind_light: u64,
+    /// What choosing took.
+    pub work: Work,
 }
 
 impl std::ops::AddAssign for Counts {
@@ -28,5 +32,6 @@ impl std::ops::AddAssign for Counts {
         self.zero_intensity += other.zero_intensity;
         self.behind_surface += other.behind_surface;
         self.behind_light += other.behind_light;
+        self.work.add(other.work);
     }
 }

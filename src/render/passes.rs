@@ -3,10 +3,12 @@
 use super::counts::Counts;
 use super::film::Film;
 use super::kernel::{Kernel, kernel};
+use crate::base::draws::Points;
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, PickBuffer, Worker};
+use crate::strategy::erased::{AnySampler, Block, Frame, PickBuffer, Worker};
+use crate::strategy::tally::Tally;
 use crate::visibility::stage::Stage;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -38,32 +40,52 @@ const PICKS: usize = 16_384;
 impl Plan<'_> {
     /// Adds `passes` more passes to `film`, on this thread.
     pub fn run(&self, passes: u32, film: &mut Film) {
-        self.one_thread(kernel(self.stage.needs(), false), passes, film, &mut Counts::default());
+        self.one_thread(false, passes, film);
     }
 
     /// As [`run`](Self::run), counting.
     pub fn run_counting(&self, passes: u32, film: &mut Film) -> Counts {
-        let mut counts = Counts::default();
-        self.one_thread(kernel(self.stage.needs(), true), passes, film, &mut counts);
-        counts
+        self.one_thread(true, passes, film)
     }
 
     /// As [`run`](Self::run), on all threads of the current pool: the same bytes.
     pub fn run_parallel(&self, passes: u32, film: &mut Film) {
         let kernel = kernel(self.stage.needs(), false);
-        let block = film.next..film.next + passes;
-        self.receivers.par_chunks(TILE).zip(film.sums.par_chunks_mut(TILE)).for_each_init(
-            || Tiles::new(self.sampler),
-            |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &block, sums, &mut Counts::default()),
-        );
-        film.next += passes;
+        for passes in self.blocks(passes, film) {
+            let block = self.sampler.begin(self.frame(), passes.clone());
+            self.receivers.par_chunks(TILE).zip(film.sums.par_chunks_mut(TILE)).for_each_init(
+                || Tiles::new(&*block, false),
+                |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &passes, sums),
+            );
+        }
     }
 
-    fn one_thread(&self, kernel: Kernel, passes: u32, film: &mut Film, counts: &mut Counts) {
-        let block = film.next..film.next + passes;
-        let mut tiles = Tiles::new(self.sampler);
-        tiles.run(self, kernel, self.receivers, &block, &mut film.sums, counts);
-        film.next += passes;
+    fn one_thread(&self, counting: bool, passes: u32, film: &mut Film) -> Counts {
+        let kernel = kernel(self.stage.needs(), counting);
+        let mut counts = Counts::default();
+        for passes in self.blocks(passes, film) {
+            let block = self.sampler.begin(self.frame(), passes.clone());
+            let mut tiles = Tiles::new(&*block, counting);
+            tiles.run(self, kernel, self.receivers, &passes, &mut film.sums);
+            tiles.counts.work.add(tiles.worker.work());
+            counts += tiles.counts;
+        }
+        counts
+    }
+
+    fn frame(&self) -> Frame<'_> {
+        Frame { receivers: self.receivers, key: self.key, points: Points::default() }
+    }
+
+    /// The next `passes` passes of a film in blocks that the sampler can begin together.
+    fn blocks(&self, passes: u32, film: &mut Film) -> impl Iterator<Item = Range<u32>> + use<> {
+        let (mut next, end, most) = (film.next, film.next + passes, self.sampler.most_passes());
+        film.next = end;
+        std::iter::from_fn(move || {
+            let block = next..end.min(next.saturating_add(most));
+            next = block.end;
+            (!block.is_empty()).then_some(block)
+        })
     }
 }
 
@@ -71,25 +93,19 @@ impl Plan<'_> {
 struct Tiles<'a> {
     worker: Box<dyn Worker + 'a>,
     picks: PickBuffer,
+    counts: Counts,
     /// Receivers and passes of the next call, from the picks of the last.
     size: (usize, u32),
 }
 
 impl<'a> Tiles<'a> {
-    fn new(sampler: &'a dyn AnySampler) -> Self {
-        Self { worker: sampler.worker(), picks: PickBuffer::default(), size: (1, 1) }
+    fn new(block: &'a dyn Block, counting: bool) -> Self {
+        let counts = Counts::default();
+        Self { worker: block.worker(counting), picks: PickBuffer::default(), counts, size: (1, 1) }
     }
 
-    fn run(
-        &mut self,
-        plan: &Plan<'_>,
-        kernel: Kernel,
-        receivers: &[Receiver],
-        block: &Range<u32>,
-        sums: &mut [DVec3],
-        counts: &mut Counts,
-    ) {
-        let points = plan.stage.needs().has(Kind::Triangle);
+    fn run(&mut self, plan: &Plan<'_>, kernel: Kernel, receivers: &[Receiver], block: &Range<u32>, sums: &mut [DVec3]) {
+        let extended = plan.stage.needs().has(Kind::Triangle);
         let mut done = 0;
         while done < receivers.len() {
             let tile = done..(done + self.size.0).min(receivers.len());
@@ -98,8 +114,8 @@ impl<'a> Tiles<'a> {
                 let passes = pass..(pass + self.size.1).min(block.end);
                 let count = (passes.end - passes.start) as usize;
                 let (receivers, sums) = (&receivers[tile.clone()], &mut sums[tile.clone()]);
-                self.worker.fill(receivers, passes.clone(), plan.key, points, &mut self.picks);
-                kernel(plan.stage, receivers, count, &self.picks, sums, counts);
+                self.worker.fill(receivers, passes.clone(), extended, &mut self.picks);
+                kernel(plan.stage, receivers, count, &self.picks, sums, &mut self.counts);
                 // A sampler that takes thousands of lights gets one receiver and few passes at a time.
                 let a_call = (self.picks.len() / (receivers.len() * count)).max(1);
                 let calls = (PICKS / a_call).clamp(1, CALLS);

@@ -11,7 +11,7 @@ pub fn bias2(summary: &Summary) -> f64 {
         // `max` would turn NaN, a bias not known, into 0.
         Claim::Biased { .. } if summary.rel_bias2.mean.is_nan() => f64::NAN,
         Claim::Biased { .. } => summary.rel_bias2.mean.max(0.0),
-        Claim::Unbiased | Claim::Floor | Claim::Ceiling => 0.0,
+        Claim::Unbiased | Claim::Floor | Claim::Ceiling | Claim::Oracle => 0.0,
     }
 }
 
@@ -97,6 +97,7 @@ pub fn group(summary: &Summary) -> u8 {
         Claim::Biased { .. } => 1,
         Claim::Floor => 2,
         Claim::Ceiling => 3,
+        Claim::Oracle => 4,
     }
 }
 

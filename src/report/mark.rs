@@ -39,7 +39,7 @@ impl Mark {
     pub(super) fn new(claim: &Claim, nth: usize) -> Self {
         let (colour, shape) = match claim {
             Claim::Floor => (RGBColor(150, 150, 150), SHAPES[1]),
-            Claim::Ceiling => (BLACK, SHAPES[1]),
+            Claim::Ceiling | Claim::Oracle => (BLACK, SHAPES[1]),
             // 7 and 5 have no common divisor: neighbours differ in both.
             Claim::Unbiased | Claim::Biased { .. } => (COLOURS[nth % COLOURS.len()], SHAPES[nth % SHAPES.len()]),
         };

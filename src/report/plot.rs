@@ -52,7 +52,7 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
         .into_iter()
         .map(|summary| {
             // By name and not by rank: a strategy keeps its look from scene to scene of a run.
-            let coloured = |s: &Summary| !matches!(s.claim, Claim::Floor | Claim::Ceiling);
+            let coloured = |s: &Summary| !matches!(s.claim, Claim::Floor | Claim::Ceiling | Claim::Oracle);
             let before = scene.summaries.iter().filter(|s| coloured(s) && s.strategy < summary.strategy);
             let nth = before.count();
             let mut curve = Curve::of(&rows, &summary.strategy);

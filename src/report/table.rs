@@ -223,6 +223,7 @@ fn claim(summary: &Summary) -> &'static str {
         Claim::Biased { .. } => "biased",
         Claim::Floor => "floor",
         Claim::Ceiling => "ceiling",
+        Claim::Oracle => "oracle",
     }
 }
 

@@ -1,7 +1,9 @@
 //! Every light: what does no choice at all cost?
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
@@ -38,8 +40,8 @@ pub struct Lights(Vec<(LightId, bool)>);
 impl LightSampler for Lights {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
-        let call = rng.bits();
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
+        let call = draws.stream().bits();
         for &(light, extended) in &self.0 {
             let uv = if extended { Stream::keyed(&[call, u64::from(light)]).uniform2() } else { [0.0; 2] };
             out.push_at(light, 1.0, uv);

@@ -4,9 +4,10 @@
 //! lamps around a receiver that faces them the loss grows with the logarithm of the city's radius and never stops.
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::Scene;
 use crate::scene::influence::{Cutoff, Transfer};
 use crate::scene::light::LightId;
@@ -75,12 +76,13 @@ impl LightSampler for Sampler {
     /// The list of the receiver arrived at.
     type Scratch = Vec<LightId>;
 
-    fn arrive(&self, at: &Receiver, list: &mut Vec<LightId>) {
+    fn arrive<T: Tally>(&self, at: &Receiver, list: &mut Vec<LightId>, tally: &mut T) {
         list.clear();
         self.tree.list(at.position, list);
+        tally.weighed(list.len() as u64);
     }
 
-    fn sample(&self, _at: &Receiver, _rng: &mut Stream, list: &mut Vec<LightId>, out: &mut Picks<'_>) {
+    fn sample<T: Tally>(&self, _at: &Receiver, _draws: &mut Draws, list: &mut Vec<LightId>, out: &mut Picks<'_, T>) {
         list.iter().for_each(|&light| out.push(light, 1.0));
     }
 

@@ -5,10 +5,11 @@
 use super::influence::Range;
 use super::intensity::{draw, expect};
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::discrete::Cumulative;
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
@@ -73,12 +74,13 @@ impl Sampler {
 impl LightSampler for Sampler {
     type Scratch = Listed;
 
-    fn arrive(&self, at: &Receiver, listed: &mut Listed) {
+    fn arrive<T: Tally>(&self, at: &Receiver, listed: &mut Listed, tally: &mut T) {
         self.list(at, listed);
+        tally.weighed(listed.lights.len() as u64);
     }
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, listed: &mut Listed, out: &mut Picks<'_>) {
-        draw(&listed.sums, &listed.lights, self.picks, rng, out);
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, listed: &mut Listed, out: &mut Picks<'_, T>) {
+        draw(&listed.sums, &listed.lights, self.picks, draws, out);
     }
 
     fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {

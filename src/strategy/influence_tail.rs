@@ -11,9 +11,10 @@
 use super::influence::Range;
 use super::parameters::Arguments;
 use super::power::Aliased;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, influence_pick};
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::Scene;
 use crate::scene::influence::Cutoff;
 use crate::scene::light::{Light, LightId};
@@ -73,14 +74,14 @@ impl Sampler {
 impl LightSampler for Sampler {
     type Scratch = influence_pick::Listed;
 
-    fn arrive(&self, at: &Receiver, listed: &mut Self::Scratch) {
-        self.near.arrive(at, listed);
+    fn arrive<T: Tally>(&self, at: &Receiver, listed: &mut Self::Scratch, tally: &mut T) {
+        self.near.arrive(at, listed, tally);
     }
 
-    fn sample(&self, at: &Receiver, rng: &mut Stream, listed: &mut Self::Scratch, out: &mut Picks<'_>) {
-        self.near.sample(at, rng, listed, out);
-        for _ in 0..self.tail {
-            if let Some((light, pmf)) = self.far.pick(rng)
+    fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, listed: &mut Self::Scratch, out: &mut Picks<'_, T>) {
+        self.near.sample(at, draws, listed, out);
+        for j in 0..self.tail {
+            if let Some((light, pmf)) = self.far.pick(draws.choice_bits(j, self.tail))
                 && !self.in_range(light, at)
             {
                 out.push(light, 1.0 / (self.tail as f32 * pmf));

@@ -3,10 +3,11 @@
 //! Every light is weighed at every receiver: O(N), the yardstick of what cheaper strategies approximate.
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::discrete::Cumulative;
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
@@ -48,14 +49,15 @@ pub struct Sampler {
 impl LightSampler for Sampler {
     type Scratch = Cumulative;
 
-    fn arrive(&self, at: &Receiver, sums: &mut Cumulative) {
+    fn arrive<T: Tally>(&self, at: &Receiver, sums: &mut Cumulative, tally: &mut T) {
         sums.clear();
+        tally.weighed(self.lights.len() as u64);
         let table = self.scene.lights();
         self.lights.iter().for_each(|&id| sums.push(importance(&table[id as usize], at)));
     }
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, sums: &mut Cumulative, out: &mut Picks<'_>) {
-        draw(sums, &self.lights, self.picks, rng, out);
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, sums: &mut Cumulative, out: &mut Picks<'_, T>) {
+        draw(sums, &self.lights, self.picks, draws, out);
     }
 
     fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
@@ -70,9 +72,15 @@ impl LightSampler for Sampler {
 
 /// `picks` independent draws of `lights` by the weights in `sums`.
 #[inline]
-pub(super) fn draw(sums: &Cumulative, lights: &[LightId], picks: u32, rng: &mut Stream, out: &mut Picks<'_>) {
-    for _ in 0..picks {
-        if let Some((index, pmf)) = sums.pick(rng.uniform64()) {
+pub(super) fn draw<T: Tally>(
+    sums: &Cumulative,
+    lights: &[LightId],
+    picks: u32,
+    draws: &mut Draws,
+    out: &mut Picks<'_, T>,
+) {
+    for j in 0..picks {
+        if let Some((index, pmf)) = sums.pick(draws.choice(j, picks)) {
             out.push(lights[index], (1.0 / (f64::from(picks) * pmf)) as f32);
         }
     }

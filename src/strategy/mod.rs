@@ -22,14 +22,17 @@ pub mod null;
 pub mod parameters;
 pub mod power;
 pub mod registry;
+pub mod tally;
 pub mod uniform;
 
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::visibility::stage::Stage;
+use erased::AnySampler;
 use parameters::Arguments;
+use tally::Tally;
 
 /// One chosen light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,15 +50,17 @@ impl Pick {
     const DRAW: [f32; 2] = [-1.0, -1.0];
 }
 
-/// Where a sampler puts its picks.
-pub struct Picks<'a> {
+/// Where a sampler puts its picks and says what they took.
+pub struct Picks<'a, T> {
     list: &'a mut Vec<Pick>,
+    /// Counts the work of choosing.
+    pub tally: &'a mut T,
 }
 
-impl<'a> Picks<'a> {
+impl<'a, T: Tally> Picks<'a, T> {
     /// Appends to `list`.
-    pub fn new(list: &'a mut Vec<Pick>) -> Self {
-        Self { list }
+    pub fn new(list: &'a mut Vec<Pick>, tally: &'a mut T) -> Self {
+        Self { list, tally }
     }
 
     /// Picks a light; the harness draws the point on it.
@@ -91,6 +96,8 @@ pub enum Role {
     Floor,
     /// It takes every light: the ceiling.
     Ceiling,
+    /// It chooses by what it cannot know without paying for it: the floor under every error, never timed.
+    Oracle,
 }
 
 /// What a strategy is, apart from its parameters.
@@ -122,7 +129,7 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     /// What it is.
     const INFO: Info;
     /// What it becomes for a scene.
-    type Sampler: LightSampler + 'static;
+    type Sampler: AnySampler + 'static;
     /// Reads the parameters; each has a default.
     fn configure(arguments: &mut Arguments) -> Result<Self>;
     /// Builds the sampler: the set-up phase.
@@ -132,13 +139,13 @@ pub trait Strategy: Sized + Send + Sync + 'static {
 /// Lights chosen for one scene: the query phase. No allocation once the scratch is warm, no locks.
 pub trait LightSampler: Send + Sync {
     /// Storage of one worker, reused from call to call.
-    type Scratch: Default + Send;
+    type Scratch: Default + Send + 'static;
 
     /// Called when the harness comes to a receiver, before the passes that it samples there.
-    fn arrive(&self, _at: &Receiver, _scratch: &mut Self::Scratch) {}
+    fn arrive<T: Tally>(&self, _at: &Receiver, _scratch: &mut Self::Scratch, _tally: &mut T) {}
 
     /// Chooses lights for one pass at the receiver that was arrived at.
-    fn sample(&self, at: &Receiver, rng: &mut Stream, scratch: &mut Self::Scratch, out: &mut Picks<'_>);
+    fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, scratch: &mut Self::Scratch, out: &mut Picks<'_, T>);
 
     /// Adds to `counts` (one a light of the scene) how often each light is expected to be pushed in a call of
     /// [`sample`](Self::sample): the probability for one pick, k times it for k, 1 for a light that is listed. False if

@@ -1,9 +1,10 @@
 //! Nothing: what does the harness itself cost?
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::receiver::Receiver;
 
 /// Picks no light.
@@ -31,7 +32,7 @@ impl Strategy for Null {
 impl LightSampler for Null {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, _rng: &mut Stream, _scratch: &mut (), _out: &mut Picks<'_>) {}
+    fn sample<T: Tally>(&self, _at: &Receiver, _draws: &mut Draws, _scratch: &mut (), _out: &mut Picks<'_, T>) {}
 
     fn expected_counts(&self, _at: &Receiver, _counts: &mut [f32]) -> bool {
         true

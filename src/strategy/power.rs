@@ -1,11 +1,12 @@
 //! Bright lights more often, wherever they are.
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::colour::luminance;
 use crate::base::discrete::AliasTable;
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::light::{Light, LightId};
 use crate::scene::receiver::Receiver;
 use crate::visibility::stage::Stage;
@@ -53,11 +54,11 @@ impl Aliased {
         Ok(Self { lights, table })
     }
 
-    /// A light and its probability.
+    /// The light that 64 uniform bits choose, and its probability.
     #[inline]
-    pub(super) fn pick(&self, rng: &mut Stream) -> Option<(LightId, f32)> {
+    pub(super) fn pick(&self, bits: u64) -> Option<(LightId, f32)> {
         let table = self.table.as_ref()?;
-        let index = table.pick(rng.bits());
+        let index = table.pick(bits);
         Some((self.lights[index], table.pmf(index)))
     }
 
@@ -81,9 +82,9 @@ pub struct Sampler {
 impl LightSampler for Sampler {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
-        for _ in 0..self.picks {
-            if let Some((light, pmf)) = self.lights.pick(rng) {
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
+        for j in 0..self.picks {
+            if let Some((light, pmf)) = self.lights.pick(draws.choice_bits(j, self.picks)) {
                 out.push(light, 1.0 / (self.picks as f32 * pmf));
             }
         }

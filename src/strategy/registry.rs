@@ -1,9 +1,10 @@
 //! Which strategies are there? One line each.
 
-use super::erased::{AnySampler, AnyStrategy};
+use super::erased::{AnySampler, AnyStrategy, Spread};
 use super::parameters::{Arguments, Parameter};
-use super::{BuildContext, Info, Strategy};
+use super::{BuildContext, Info, Role, Strategy};
 use super::{all, influence, influence_pick, influence_tail, intensity, null, power, uniform};
+use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
 use crate::base::names;
 
@@ -43,6 +44,7 @@ pub struct Configured {
     name: String,
     parameters: Vec<Parameter>,
     strategy: Box<dyn AnyStrategy>,
+    points: Points,
 }
 
 impl Configured {
@@ -63,7 +65,7 @@ impl Configured {
 
     /// Builds its sampler for a scene.
     pub fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>> {
-        self.strategy.build(context)
+        Ok(Box::new(Spread { sampler: self.strategy.build(context)?, points: self.points }))
     }
 }
 
@@ -81,11 +83,23 @@ pub fn parse_from(entries: &[Entry], text: &str) -> Result<Configured> {
     };
     let mut arguments = Arguments::new(name, rest)?;
     let strategy = (entry.make)(&mut arguments)?;
+    let points = points(entry, &mut arguments)?;
     let parameters = arguments.finish()?;
     let changed: Vec<String> =
         parameters.iter().filter(|p| p.value != p.default).map(|p| format!("{}={}", p.name, p.value)).collect();
     let name = if changed.is_empty() { name.to_owned() } else { format!("{name}:{}", changed.join(",")) };
-    Ok(Configured { name, parameters, strategy })
+    Ok(Configured { name, parameters, strategy, points })
+}
+
+/// The parameter of every strategy that draws numbers: how they are spread over a pixel's passes.
+fn points(entry: &Entry, arguments: &mut Arguments) -> Result<Points> {
+    if matches!(entry.info.role, Role::Floor | Role::Ceiling) {
+        return Ok(Points::Random);
+    }
+    let meaning = "how choices and points on lights are spread over a pixel's passes";
+    // The last: fewest errors for the least time.
+    let index = arguments.choice("points", Points::ALL.len() - 1, &Points::NAMES, meaning)?;
+    Ok(Points::ALL[index])
 }
 
 /// Reads a list of strategies; commas between strategies and between parameters are told apart by the `=`.

@@ -1,9 +1,11 @@
 //! Any light with the same chance.
 
 use super::parameters::Arguments;
+use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
+use crate::base::random::below;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 
@@ -42,12 +44,13 @@ pub struct Sampler {
 impl LightSampler for Sampler {
     type Scratch = ();
 
-    fn sample(&self, _at: &Receiver, rng: &mut Stream, _scratch: &mut (), out: &mut Picks<'_>) {
+    fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
         if self.lights.is_empty() {
             return;
         }
-        for _ in 0..self.picks {
-            out.push(self.lights[rng.below(self.lights.len())], self.weight);
+        for j in 0..self.picks {
+            let bits = draws.choice_bits(j, self.picks);
+            out.push(self.lights[below(bits, self.lights.len())], self.weight);
         }
     }
 

@@ -62,7 +62,7 @@ fn ids_and_weights(subject: &Subject<'_>) -> Vec<Check> {
 
 fn filled(subject: &Subject<'_>, receivers: &[Receiver]) -> PickBuffer {
     let mut buffer = PickBuffer::default();
-    subject.sampler.worker().fill(receivers, 0..PASSES, subject.key(), true, &mut buffer);
+    subject.begin(0..PASSES).worker(false).fill(receivers, 0..PASSES, true, &mut buffer);
     buffer
 }
 
@@ -79,10 +79,11 @@ fn same_seed(subject: &Subject<'_>) -> Check {
     let back = list(&filled(subject, &backwards));
     let chunks = || first.chunks(PASSES as usize);
     differ += chunks().zip(back.rchunks(PASSES as usize)).filter(|(a, b)| a != b).count();
-    let (mut worker, mut buffer) = (subject.sampler.worker(), PickBuffer::default());
+    let block = subject.begin(0..PASSES);
+    let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
     for (at, calls) in subject.receivers.iter().zip(chunks()) {
         for (pass, call) in (0..PASSES).zip(calls) {
-            worker.fill(&[*at], pass..pass + 1, subject.key(), true, &mut buffer);
+            worker.fill(&[*at], pass..pass + 1, true, &mut buffer);
             differ += usize::from(buffer.calls().next() != Some(&call[..]));
         }
     }
@@ -139,9 +140,10 @@ fn replay(subject: &Subject<'_>) -> Check {
 
 /// Allocations of a warm worker, by a counter of this thread's allocations.
 fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
+    let block = subject.begin(0..PASSES);
     let found = allocations(counter, || {
-        let (mut worker, mut buffer) = (subject.sampler.worker(), PickBuffer::default());
-        move || worker.fill(subject.receivers, 0..PASSES, subject.key(), true, &mut buffer)
+        let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
+        move || worker.fill(subject.receivers, 0..PASSES, true, &mut buffer)
     });
     let calls = subject.receivers.len() * PASSES as usize;
     Check::new(ALLOCATION, found as f64, 0.0, format!("allocations of a warm worker in {calls} calls"))

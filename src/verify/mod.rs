@@ -19,10 +19,11 @@ mod weights;
 pub use contract::{allocations, picks_in_range, picks_valid};
 pub use truth::Truth;
 
+use crate::base::draws::Points;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::AnySampler;
+use crate::strategy::erased::{AnySampler, Block, Frame};
 use crate::strategy::registry::Configured;
 use crate::strategy::{BuildContext, Claim};
 use crate::visibility::stage::Stage;
@@ -121,6 +122,12 @@ struct Subject<'a> {
 impl Subject<'_> {
     fn key(&self) -> RunKey {
         RunKey { seed: self.options.seed, run: 0 }
+    }
+
+    /// Begins passes of run 0 of all that the stage sees.
+    fn begin(&self, passes: std::ops::Range<u32>) -> Box<dyn Block + '_> {
+        let frame = Frame { receivers: self.stage.receivers(), key: self.key(), points: Points::default() };
+        self.sampler.begin(frame, passes)
     }
 }
 

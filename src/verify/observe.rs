@@ -94,9 +94,10 @@ impl Site {
 /// Draws at every receiver of the subject.
 pub(super) fn sites(subject: &Subject<'_>) -> Vec<Site> {
     let mut buffer = PickBuffer::default();
-    let mut worker = subject.sampler.worker();
+    let block = subject.begin(0..8);
+    let mut worker = block.worker(false);
     let mut picks = |at: &Receiver| {
-        worker.fill(&[*at], 0..8, subject.key(), true, &mut buffer);
+        worker.fill(&[*at], 0..8, true, &mut buffer);
         buffer.len() / 8
     };
     let most = subject.receivers.iter().map(&mut picks).max().unwrap_or(0);
@@ -112,15 +113,16 @@ pub(super) fn freedom(sites: &[Site]) -> usize {
 }
 
 fn site(subject: &Subject<'_>, at: &Receiver, batches: u32) -> Site {
-    let (stage, options, key) = (subject.stage, subject.options, subject.key());
+    let (stage, options) = (subject.stage, subject.options);
     let lights = stage.scene().lights();
     let truth = Truth::new(stage, at, options.points, options.seed);
     let mut counts = vec![0.0f32; lights.len()];
     let expected = subject.sampler.expected_counts(at, &mut counts).then_some(counts);
-    let mut worker = subject.sampler.worker();
+    let block = subject.begin(0..u32::MAX);
+    let mut worker = block.worker(false);
     let mut buffer = PickBuffer::default();
     // A first look, to share the draws out: its passes come again below.
-    worker.fill(&[*at], 0..8, key, true, &mut buffer);
+    worker.fill(&[*at], 0..8, true, &mut buffer);
     let a_call = (buffer.len() as f64 / 8.0).max(1.0);
     let calls = ((options.draws as f64 / a_call / f64::from(batches)).ceil() as u32).max(1);
     let draws = f64::from(calls) * f64::from(batches);
@@ -133,7 +135,7 @@ fn site(subject: &Subject<'_>, at: &Receiver, batches: u32) -> Site {
     let mut seen = vec![false; lights.len()];
     let mut rays = 0;
     for batch in 0..batches {
-        worker.fill(&[*at], batch * calls..(batch + 1) * calls, key, true, &mut buffer);
+        worker.fill(&[*at], batch * calls..(batch + 1) * calls, true, &mut buffer);
         let [mut n_contributing, mut sum_excess, mut sum_whole, mut sum_frequent] = [0.0f64; 4];
         for pick in buffer.calls().flatten() {
             let (id, weight) = (pick.light as usize, f64::from(pick.weight));

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Everything that strategies and renderers share; built once a scene, off every clock.
 pub struct Stage {
     scene: Arc<Scene>,
-    occluders: Occluders,
+    occluders: Arc<Occluders>,
     view: View,
     needs: Needs,
     lights: Vec<LightId>,
@@ -44,7 +44,7 @@ impl Stage {
             }
             LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
         };
-        Self { scene: Arc::new(scene), occluders, view, needs, lights, offset }
+        Self { scene: Arc::new(scene), occluders: Arc::new(occluders), view, needs, lights, offset }
     }
 
     /// The scene.
@@ -53,7 +53,7 @@ impl Stage {
     }
 
     /// What blocks light.
-    pub fn occluders(&self) -> &Occluders {
+    pub fn occluders(&self) -> &Arc<Occluders> {
         &self.occluders
     }
 
