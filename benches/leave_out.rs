@@ -19,7 +19,7 @@ use citylights::scene::needs::Needs;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::strategy::BuildContext;
-use citylights::strategy::erased::{AnySampler, PickBuffer};
+use citylights::strategy::erased::{AnySampler, Frame, PickBuffer};
 use citylights::strategy::registry::parse;
 use citylights::visibility::stage::Stage;
 use common::{Duel, RATIO, Reported};
@@ -84,10 +84,11 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
 ) -> Vec<DVec3> {
     let lights = stage.scene().lights();
     let mut sums = vec![DVec3::ZERO; receivers.len()];
-    let (mut worker, mut picks) = (sampler.worker(), PickBuffer::default());
+    let block = sampler.begin(Frame::new(receivers, KEY), 0..PASSES);
+    let (mut worker, mut picks) = (block.worker(false), PickBuffer::default());
     // As many receivers at once as the harness takes.
     for (receivers, sums) in receivers.chunks(64).zip(sums.chunks_mut(64)) {
-        worker.fill(receivers, 0..PASSES, KEY, KINDS & Kind::Triangle.bit() != 0, &mut picks);
+        worker.fill(receivers, 0..PASSES, KINDS & Kind::Triangle.bit() != 0, &mut picks);
         let mut calls = picks.calls();
         for (at, sum) in receivers.iter().zip(sums) {
             for call in calls.by_ref().take(PASSES as usize) {

@@ -6,7 +6,6 @@ mod common;
 #[path = "common/counting.rs"]
 mod counting;
 
-use citylights::base::draws::Points;
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
@@ -26,8 +25,7 @@ fn no_strategy_allocates_once_it_is_warm() {
         let name = entry.info().name;
         let sampler = sampler(name, &stage);
         let passes = sampler.most_passes().min(4);
-        let frame = Frame { receivers: stage.receivers(), key: RunKey { seed: 3, run: 0 }, points: Points::default() };
-        let block = sampler.begin(frame, 0..passes);
+        let block = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 3, run: 0 }), 0..passes);
         let found = allocations(counting::allocations, || {
             let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
             let stage = &stage;

@@ -11,7 +11,7 @@ use citylights::scene::light::Shape;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::shading::importance::importance;
-use citylights::strategy::erased::PickBuffer;
+use citylights::strategy::erased::{Frame, PickBuffer};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{ALBEDO, expected, ground, point, receiver, sampler, sixteen, spot, stage_with};
@@ -46,14 +46,15 @@ fn a_plane_of_lamps_loses_the_logarithm_of_its_radius() {
     // Exposure is 1: radiance is displayed value.
     let stage = stage_with(ground(12.0, lamps), LeaveOut::No, Offset::SCALED);
     let influence = sampler("influence", &stage);
-    let (mut worker, mut buffer) = (influence.worker(), PickBuffer::default());
+    let block = influence.begin(Frame::new(stage.receivers(), RunKey { seed: 1, run: 0 }), 0..1);
+    let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
     let orientations = 64;
     let lost: Vec<f64> = (0..orientations)
         .map(|i| {
             let (sin, cos) = (f64::from(i) / f64::from(orientations) * 2.0 * PI).sin_cos();
             let at = receiver(Vec3::new(0.0, 0.0, 10.0), Vec3::new(cos as f32, sin as f32, 0.0));
             let all: f64 = (0..stage.scene().lights().len() as u32).map(|id| unshadowed(&stage, &at, id)).sum();
-            worker.fill(&[at], 0..1, RunKey { seed: 1, run: 0 }, true, &mut buffer);
+            worker.fill(&[at], 0..1, true, &mut buffer);
             let picked: f64 =
                 buffer.calls().flatten().map(|p| f64::from(p.weight) * unshadowed(&stage, &at, p.light)).sum();
             all - picked

@@ -3,7 +3,6 @@
 use super::counts::Counts;
 use super::film::Film;
 use super::kernel::{Kernel, kernel};
-use crate::base::draws::Points;
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
@@ -74,7 +73,7 @@ impl Plan<'_> {
     }
 
     fn frame(&self) -> Frame<'_> {
-        Frame { receivers: self.receivers, key: self.key, points: Points::default() }
+        Frame::new(self.receivers, self.key)
     }
 
     /// The next `passes` passes of a film in blocks that the sampler can begin together.

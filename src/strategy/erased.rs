@@ -40,8 +40,15 @@ pub struct Frame<'a> {
     pub receivers: &'a [Receiver],
     /// Names the random numbers.
     pub key: RunKey,
-    /// How they are spread over a pixel's passes.
+    /// How they are spread over a pixel's passes; a strategy that was named has its own say.
     pub points: Points,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame with independent numbers.
+    pub fn new(receivers: &'a [Receiver], key: RunKey) -> Self {
+        Self { receivers, key, points: Points::Random }
+    }
 }
 
 /// A sampler of any type: implemented by every [`LightSampler`] and, through [`PerPass`], every [`FrameSampler`].

@@ -19,7 +19,6 @@ mod weights;
 pub use contract::{allocations, picks_in_range, picks_valid};
 pub use truth::Truth;
 
-use crate::base::draws::Points;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::scene::receiver::Receiver;
@@ -126,8 +125,7 @@ impl Subject<'_> {
 
     /// Begins passes of run 0 of all that the stage sees.
     fn begin(&self, passes: std::ops::Range<u32>) -> Box<dyn Block + '_> {
-        let frame = Frame { receivers: self.stage.receivers(), key: self.key(), points: Points::default() };
-        self.sampler.begin(frame, passes)
+        self.sampler.begin(Frame::new(self.stage.receivers(), self.key()), passes)
     }
 }
 
