@@ -49,6 +49,12 @@ impl Stream {
         below(self.bits(), n)
     }
 
+    /// A stream of its own, named by 64 bits of this one.
+    #[inline]
+    pub fn split(&mut self) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(self.bits()))
+    }
+
     /// The generator itself, for the distributions of `rand_distr`.
     pub fn generator(&mut self) -> &mut (impl Rng + use<>) {
         &mut self.0

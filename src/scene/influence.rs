@@ -46,9 +46,14 @@ impl Cutoff {
         }
     }
 
+    /// The square of a radius that holds the whole scene, in m^2: longer ones change nothing.
+    pub fn longest2(&self) -> f32 {
+        self.longest * self.longest
+    }
+
     /// The volume in which `light` is in range; `None` for a directional light, which is in range everywhere.
     pub fn volume(&self, light: &Light) -> Option<Influence> {
-        let range2 = (self.range2_per_candela * light.peak_intensity()).max_element().min(self.longest * self.longest);
+        let range2 = (self.range2_per_candela * light.peak_intensity()).max_element().min(self.longest2());
         match light.kind() {
             Kind::Point => Some(Influence { centre: light.position, radius2: range2, axis: Vec3::ZERO }),
             Kind::Spot => Some(Influence { centre: light.position, radius2: range2, axis: light.a }),

@@ -224,6 +224,28 @@ impl AnySampler for Spread {
     }
 }
 
+impl AnySampler for Box<dyn AnySampler> {
+    fn most_passes(&self) -> u32 {
+        (**self).most_passes()
+    }
+
+    fn begin<'a>(&'a self, frame: Frame<'a>, passes: Range<u32>) -> Box<dyn Block + 'a> {
+        (**self).begin(frame, passes)
+    }
+
+    fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
+        (**self).expected_counts(at, counts)
+    }
+
+    fn heap_bytes(&self) -> usize {
+        (**self).heap_bytes()
+    }
+
+    fn source(&self) -> Option<&dyn Source> {
+        (**self).source()
+    }
+}
+
 struct Begun<L> {
     sampler: L,
     key: RunKey,

@@ -49,7 +49,7 @@ impl Strategy for InfluenceTail {
         let cutoff = self.range.cutoff(&scene);
         let near = influence_pick::Sampler::new(context, &self.range, self.picks);
         // A directional light is in range everywhere and never drawn here.
-        let radius = |light: &Light| cutoff.volume(light).map_or(0.0, |volume| volume.radius2.sqrt());
+        let radius = |light: &Light| cutoff.volume(light).map_or(0.0, |volume| f64::from(volume.radius2).sqrt());
         let far = Aliased::new(context.stage, radius)?;
         Ok(Sampler { near, far, scene, cutoff, tail: self.tail })
     }

@@ -22,6 +22,7 @@ pub mod null;
 pub mod parameters;
 pub mod power;
 pub mod registry;
+pub mod stochastic_cull;
 pub mod tally;
 pub mod uniform;
 

@@ -3,7 +3,7 @@
 use super::erased::{AnySampler, AnyStrategy, Spread};
 use super::parameters::{Arguments, Parameter};
 use super::{BuildContext, Info, Role, Strategy};
-use super::{all, influence, influence_pick, influence_tail, intensity, null, power, uniform};
+use super::{all, influence, influence_pick, influence_tail, intensity, null, power, stochastic_cull, uniform};
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
 use crate::base::names;
@@ -18,6 +18,7 @@ pub const STRATEGIES: &[Entry] = &[
     Entry::of::<influence::Influence>(),
     Entry::of::<influence_pick::InfluencePick>(),
     Entry::of::<influence_tail::InfluenceTail>(),
+    Entry::of::<stochastic_cull::StochasticCull>(),
 ];
 
 /// A strategy that can be named.
@@ -61,6 +62,11 @@ impl Configured {
     /// Its parameters.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
+    }
+
+    /// How its numbers are spread over a pixel's passes.
+    pub fn points(&self) -> Points {
+        self.points
     }
 
     /// Builds its sampler for a scene.

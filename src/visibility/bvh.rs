@@ -66,6 +66,11 @@ fn pad(low: Vec3, high: Vec3) -> Aabb {
     Aabb::new(Vec3A::from(low) - margin, Vec3A::from(high) + margin)
 }
 
+/// The padded box around boxes given by their corners; empty around none.
+pub(super) fn around(corners: impl Iterator<Item = (Vec3, Vec3)>) -> Aabb {
+    corners.fold(Aabb::empty(), |all, (low, high)| all.union(&pad(low, high)))
+}
+
 /// Grows the boxes that occur too often; gives how many they are.
 fn separate(boxes: &mut [Aabb]) -> usize {
     let key = |b: &Aabb| (b.min.to_array().map(f32::to_bits), b.max.to_array().map(f32::to_bits));

@@ -5,5 +5,6 @@ pub mod influence;
 pub mod occluders;
 pub mod offset;
 pub mod reach;
+pub mod roulette;
 pub mod stage;
 pub mod view;
