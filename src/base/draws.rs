@@ -54,23 +54,19 @@ impl Sequence {
     /// The numbers of one pass.
     #[inline]
     pub fn pass(&self, pass: u32) -> Draws {
-        Draws {
-            stream: self.key.stream(pass, self.pixel),
-            points: self.points,
-            index: u64::from(pass),
-            name: self.name,
-        }
+        Draws { of: *self, pass, stream: None, index: u64::from(pass) }
     }
 }
 
 /// The numbers of one call of a sampler.
 #[derive(Clone, Debug)]
 pub struct Draws {
-    stream: Stream,
-    points: Points,
+    of: Sequence,
+    pass: u32,
+    /// Made when it is first needed: most choices by R2 do without.
+    stream: Option<Stream>,
     /// The place in the sequence: the pass, refined where calls are nested.
     index: u64,
-    name: u64,
 }
 
 impl Draws {
@@ -81,13 +77,13 @@ impl Draws {
     #[inline]
     pub fn choice_bits(&mut self, j: u32, of: u32) -> u64 {
         let index = self.index * u64::from(of) + u64::from(j);
-        match self.points {
-            Points::Random => self.stream.bits(),
-            Points::R2 => self.name.wrapping_add(index.wrapping_mul(GOLDEN)),
+        match self.of.points {
+            Points::Random => self.stream().bits(),
+            Points::R2 => self.of.name.wrapping_add(index.wrapping_mul(GOLDEN)),
             // 23 bits from the sequence, the rest at random below them.
             Points::Sobol => {
-                let high = (sobol(index, 0, self.name) * 8_388_608.0) as u64;
-                (high << 41) | (self.stream.bits() >> 23)
+                let high = (sobol(index, 0, self.of.name) * 8_388_608.0) as u64;
+                (high << 41) | (self.stream().bits() >> 23)
             }
         }
     }
@@ -101,11 +97,11 @@ impl Draws {
     /// A point in `[0, 1)^2` for the pick in place `slot` of this call.
     #[inline]
     pub fn point(&mut self, slot: u32) -> [f32; 2] {
-        match self.points {
-            Points::Random => self.stream.uniform2(),
+        match self.of.points {
+            Points::Random => self.stream().uniform2(),
             Points::R2 => {
                 // Of its own for each place, so that the points of several picks are independent of one another.
-                let turn = hash(&[self.name, u64::from(slot)]);
+                let turn = hash(&[self.of.name, u64::from(slot)]);
                 let at = |start: u64, step: u64| {
                     (start.wrapping_add(self.index.wrapping_mul(step)) >> 40) as f32 * (1.0 / 16_777_216.0)
                 };
@@ -113,7 +109,7 @@ impl Draws {
             }
             Points::Sobol => {
                 // The first place shares its scrambling with the choice: three dimensions of one sequence.
-                let name = if slot == 0 { self.name } else { hash(&[self.name, u64::from(slot)]) };
+                let name = if slot == 0 { self.of.name } else { hash(&[self.of.name, u64::from(slot)]) };
                 [sobol(self.index, 1, name), sobol(self.index, 2, name)]
             }
         }
@@ -122,7 +118,7 @@ impl Draws {
     /// Independent numbers.
     #[inline]
     pub fn stream(&mut self) -> &mut Stream {
-        &mut self.stream
+        self.stream.get_or_insert_with(|| self.of.key.stream(self.pass, self.of.pixel))
     }
 
     /// Lets another sampler make the `j`-th of `of` calls within this one.
