@@ -42,8 +42,8 @@ impl Strategy for Oracle {
 
     fn configure(arguments: &mut Arguments) -> Result<Self> {
         let meaning = "share of the picks that goes to triangles by what they would add with nothing in between";
-        // None at all would leave out a triangle whose few points are hidden.
-        Ok(Self { mix: arguments.real("mix", 0.05, 0.001..=1.0, meaning)? })
+        // None at all would leave out a triangle whose few points are hidden, and nothing else a lamp.
+        Ok(Self { mix: arguments.real("mix", 0.05, 0.001..=0.5, meaning)? })
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {

@@ -98,10 +98,8 @@ pub(super) fn parse_source(text: &str) -> Result<Configured> {
     if strategy.strategy.gives_candidates() {
         return Ok(strategy);
     }
-    Err(Error::Invalid(format!(
-        "`{}` gives no candidates: it takes all lights or none, or needs more than one receiver or strategy",
-        strategy.name
-    )))
+    let text = "gives no candidates; name a strategy that chooses lights at one receiver by itself, like `power`";
+    Err(Error::Invalid(format!("`{}` {text}", strategy.name)))
 }
 
 fn read(
