@@ -124,8 +124,15 @@ impl Cumulative {
         // Rounding can bring the target up to the total; the last entry that adds something is then the choice.
         let index = self.ends.partition_point(|&end| end <= target);
         let index = if index < self.ends.len() { index } else { self.ends.partition_point(|&end| end < total) };
+        Some((index, self.pmf(index)))
+    }
+
+    /// The probability that [`pick`](Self::pick) gives `index`; 0 if all weights are 0.
+    #[inline]
+    pub fn pmf(&self, index: usize) -> f64 {
         let start = if index == 0 { 0.0 } else { self.ends[index - 1] };
-        Some((index, (self.ends[index] - start) / total))
+        let total = self.total();
+        if total > 0.0 { (self.ends[index] - start) / total } else { 0.0 }
     }
 }
 

@@ -17,15 +17,21 @@ use std::ops::Range;
 
 /// A strategy of any type.
 pub trait AnyStrategy: Send + Sync {
-    /// What it is.
+    /// As [`Strategy::info`].
     fn info(&self) -> Info;
+    /// As [`Strategy::gives_candidates`].
+    fn gives_candidates(&self) -> bool;
     /// Builds its sampler for a scene.
     fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>>;
 }
 
 impl<S: Strategy> AnyStrategy for S {
     fn info(&self) -> Info {
-        S::INFO
+        Strategy::info(self)
+    }
+
+    fn gives_candidates(&self) -> bool {
+        Strategy::gives_candidates(self)
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>> {

@@ -13,17 +13,22 @@
 //! Adding one takes a file here and a line in [`registry`].
 
 pub mod all;
+mod candidates;
 pub mod erased;
 pub mod influence;
 pub mod influence_pick;
 pub mod influence_tail;
 pub mod intensity;
 pub mod null;
+pub mod oracle;
 pub mod parameters;
 pub mod power;
 pub mod registry;
+pub mod resampled;
+pub mod restir;
 pub mod stochastic_cull;
 pub mod tally;
+mod target;
 pub mod uniform;
 
 use crate::base::draws::Draws;
@@ -133,6 +138,15 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     type Sampler: AnySampler + 'static;
     /// Reads the parameters; each has a default.
     fn configure(arguments: &mut Arguments) -> Result<Self>;
+    /// What it is with its parameters: they may decide the claim.
+    fn info(&self) -> Info {
+        Self::INFO
+    }
+    /// Whether other strategies may take candidates from it: it chooses at one receiver, without a view of the frame, and
+    /// takes none itself.
+    fn gives_candidates(&self) -> bool {
+        Self::INFO.role == Role::Choosing
+    }
     /// Builds the sampler: the set-up phase.
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler>;
 }

@@ -1,5 +1,6 @@
 //! `name:key=value,key=value`: parameters as one string, read and printed the same everywhere.
 
+use super::registry::{self, Configured};
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use std::fmt::Display;
@@ -83,6 +84,21 @@ impl Arguments {
         };
         self.read.push(Parameter { name, value, default: words[default].to_owned(), allowed, meaning });
         Ok(index)
+    }
+
+    /// A strategy to take candidates from; its own parameters stand between `;`: `light-tree:arity=2;far=0.02`.
+    pub fn strategy(&mut self, name: &'static str, default: &'static str, meaning: &'static str) -> Result<Configured> {
+        let text = self.take(name).unwrap_or_else(|| default.to_owned());
+        // One level deep: what is named here takes no strategy itself.
+        if text.matches(':').count() > 1 {
+            return Err(self.refuse(name, &text, "a strategy in a strategy in a strategy goes too far".into()));
+        }
+        let strategy = registry::parse_source(&text.replace(';', ","))
+            .map_err(|error| self.refuse(name, &text, error.to_string()))?;
+        let value = strategy.name().replace(',', ";");
+        let allowed = "a strategy that chooses lights, its own parameters between `;`".to_owned();
+        self.read.push(Parameter { name, value, default: default.to_owned(), allowed, meaning });
+        Ok(strategy)
     }
 
     fn number<T: FromStr + Display + PartialOrd + Copy>(

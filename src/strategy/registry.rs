@@ -3,7 +3,10 @@
 use super::erased::{AnySampler, AnyStrategy, Spread};
 use super::parameters::{Arguments, Parameter};
 use super::{BuildContext, Info, Role, Strategy};
-use super::{all, influence, influence_pick, influence_tail, intensity, null, power, stochastic_cull, uniform};
+use super::{
+    all, influence, influence_pick, influence_tail, intensity, null, oracle, power, resampled, restir, stochastic_cull,
+    uniform,
+};
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
 use crate::base::names;
@@ -19,6 +22,9 @@ pub const STRATEGIES: &[Entry] = &[
     Entry::of::<influence_pick::InfluencePick>(),
     Entry::of::<influence_tail::InfluenceTail>(),
     Entry::of::<stochastic_cull::StochasticCull>(),
+    Entry::of::<resampled::Resampled>(),
+    Entry::of::<restir::Restir>(),
+    Entry::of::<oracle::Oracle>(),
 ];
 
 /// A strategy that can be named.
@@ -82,6 +88,25 @@ pub fn parse(text: &str) -> Result<Configured> {
 
 /// Reads a strategy's string by a registry of one's own.
 pub fn parse_from(entries: &[Entry], text: &str) -> Result<Configured> {
+    read(entries, text, points)
+}
+
+/// Reads a strategy that another one takes candidates from. Its numbers are spread as the other's are, so that it has no
+/// `points` of its own.
+pub(super) fn parse_source(text: &str) -> Result<Configured> {
+    let strategy = read(STRATEGIES, text, |_, _| Ok(Points::Random))?;
+    if strategy.strategy.gives_candidates() {
+        return Ok(strategy);
+    }
+    let text = "gives no candidates; name a strategy that chooses lights at one receiver by itself, like `power`";
+    Err(Error::Invalid(format!("`{}` {text}", strategy.name)))
+}
+
+fn read(
+    entries: &[Entry],
+    text: &str,
+    points: impl Fn(&Entry, &mut Arguments) -> Result<Points>,
+) -> Result<Configured> {
     let (name, rest) = text.trim().split_once(':').unwrap_or((text.trim(), ""));
     let Some(entry) = entries.iter().find(|entry| entry.info.name == name) else {
         let near = names::near(name, entries.iter().map(|entry| entry.info.name));

@@ -4,6 +4,8 @@
 
 /// Counts the work of choosing.
 pub trait Tally: Default + Send {
+    /// Whether it counts at all; if not, a sampler within another need not count either.
+    const COUNTS: bool;
     /// Nodes of a hierarchy visited.
     fn nodes(&mut self, count: u64);
     /// Lights or nodes weighed at a receiver.
@@ -23,6 +25,8 @@ pub trait Tally: Default + Send {
 pub struct Uncounted;
 
 impl Tally for Uncounted {
+    const COUNTS: bool = false;
+
     #[inline(always)]
     fn nodes(&mut self, _count: u64) {}
     #[inline(always)]
@@ -52,6 +56,8 @@ pub struct Work {
 }
 
 impl Tally for Work {
+    const COUNTS: bool = true;
+
     fn nodes(&mut self, count: u64) {
         self.nodes += count;
     }

@@ -59,6 +59,10 @@ impl Strategy for StochasticCull {
         Ok(Self { range: Range::configure(arguments)?, picks, draw: [Draw::Pass, Draw::Receiver][draw] })
     }
 
+    fn gives_candidates(&self) -> bool {
+        matches!(self.draw, Draw::Receiver)
+    }
+
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
         Ok(match self.draw {
             Draw::Pass => Box::new(PerPass(pass::Sampler::new(context, &self.range, self.picks))),

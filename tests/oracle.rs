@@ -1,0 +1,57 @@
+//! The oracle knows what each light adds, and is therefore the floor.
+
+#![cfg(feature = "measure")]
+
+mod common;
+#[path = "common/runs.rs"]
+mod runs;
+
+use citylights::strategy::registry::parse;
+use citylights::verify::{Options, Truth, verify};
+use common::{expected, ground, point, sixteen, stage};
+use glam::Vec3;
+use runs::Runs;
+
+#[test]
+fn the_oracle_keeps_its_contract() {
+    let stage = stage(sixteen());
+    for name in ["oracle", "oracle:mix=0.001", "oracle:mix=0.5"] {
+        let checks = verify(&parse(name).expect(name), &stage, &Options::default()).expect(name);
+        let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
+        assert!(checks.len() > 10 && failed.is_empty(), "{name}\n{}", failed.join("\n"));
+    }
+    Runs::new("oracle", &stage, 32, 8).assert_unbiased("oracle");
+}
+
+#[test]
+fn of_lights_without_extent_it_picks_by_exactly_what_they_add() {
+    let mut parts = sixteen();
+    parts.lights.truncate(10);
+    let stage = stage(parts);
+    for at in stage.receivers().iter().step_by(41) {
+        let truth = Truth::new(&stage, at, 0, 1);
+        let counts = expected("oracle", &stage, at);
+        for (found, value) in counts.iter().zip(truth.lights()) {
+            assert!((f64::from(*found) * truth.total() - value).abs() <= 1e-5 * truth.total(), "pixel {}", at.pixel);
+        }
+    }
+    // Grey lights, chosen by exactly what they add: each pass is exact.
+    let grey = (0..6).map(|i| point(Vec3::new(i as f32 * 3.0 - 8.0, 2.0, 4.0), 50.0 + 40.0 * i as f32)).collect();
+    let mut parts = ground(12.0, grey);
+    parts.surfaces.extend(common::cuboid(Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, 1.0, 6.0)));
+    let stage = common::stage(parts);
+    let [oracle, intensity] = ["oracle", "intensity"].map(|name| Runs::new(name, &stage, 4, 1).mse());
+    assert!(oracle < 1e-6 * intensity, "{oracle} beside {intensity}");
+}
+
+#[test]
+fn it_errs_least_of_all_that_pick_one_light() {
+    let stage = stage(sixteen());
+    let mse = |name: &str| Runs::new(&format!("{name}points=random"), &stage, 8, 4).mse();
+    let oracle = mse("oracle:");
+    for name in ["intensity:", "power:", "uniform:", "resampled:m=16,"] {
+        let other = mse(name);
+        println!("{name} {:.2} x oracle", other / oracle);
+        assert!(other > oracle, "{name} {other} below {oracle}");
+    }
+}
