@@ -17,7 +17,7 @@ use citylights::strategy::parameters::Arguments;
 use citylights::strategy::registry::{Entry, parse_from};
 use citylights::strategy::tally::Tally;
 use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
-use citylights::verify::{Check, Options, picks_in_range, picks_valid, verify};
+use citylights::verify::{Check, Options, Verifier, picks_in_range, picks_valid};
 use common::{sixteen, stage};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -135,7 +135,7 @@ fn checks(kind: u8) -> Vec<Check> {
 
 fn checks_with(kind: u8, options: &Options) -> Vec<Check> {
     let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
-    verify(&strategy, &stage(sixteen()), options).expect("a sampler")
+    Verifier::new(&stage(sixteen()), *options).verify(&strategy).expect("a sampler")
 }
 
 fn print(checks: &[Check]) -> String {
@@ -168,15 +168,20 @@ fn the_right_strategy_passes_everything() {
 fn a_right_strategy_fails_no_check_oftener_than_its_level() {
     // 60 seeds at the 1 % level: more than 4 failures of one check have a chance of 3 in 10,000. Few draws at a receiver,
     // so that rare lights are rare.
-    let mut failures = std::collections::BTreeMap::new();
-    for seed in 100..160 {
-        let options = Options { receivers: 6, draws: 3_000, batches: 100, seed, ..Options::default() };
-        for check in checks_with(RIGHT, &options) {
-            *failures.entry(check.name).or_insert(0) += u32::from(!check.passed);
+    let stage = stage(sixteen());
+    for points in ["random", "sobol", "r2"] {
+        let strategy = parse_from(MUTANTS, &format!("right:points={points}")).expect("a strategy");
+        let sampler = strategy.build(BuildContext { stage: &stage, seed: 1 }).expect("a sampler");
+        let mut failures = std::collections::BTreeMap::new();
+        for seed in 100..160 {
+            let options = Options { receivers: 6, draws: 3_000, batches: 100, seed, ..Options::default() };
+            for check in Verifier::new(&stage, options).look(&*sampler, Claim::Unbiased) {
+                *failures.entry(check.name).or_insert(0) += u32::from(!check.passed);
+            }
         }
+        println!("points={points}: failures in 60 seeds: {failures:?}");
+        assert!(failures.values().all(|&n| n <= 4), "points={points}: {failures:?}, seeds 100 to 159");
     }
-    println!("failures in 60 seeds: {failures:?}");
-    assert!(failures.values().all(|&n| n <= 4), "{failures:?}, seeds 100 to 159");
 }
 
 #[test]
@@ -203,10 +208,10 @@ fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let scene = load(&file, &Overrides::default()).expect("a shipped scene");
     let city = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let options = Options { receivers: 16, draws: 10_000, ..Options::default() };
+    let verifier = Verifier::new(&city, Options { receivers: 16, draws: 10_000, ..Options::default() });
     for (kind, meant) in [(RIGHT, None), (HEAVY, Some("weights-total")), (DROPPED, Some("coverage"))] {
         let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
-        let checks = verify(&strategy, &city, &options).expect("a sampler");
+        let checks = verifier.verify(&strategy).expect("a sampler");
         println!("{}{}", NAMES[kind as usize], print(&checks));
         match meant {
             None => assert!(checks.iter().all(|check| check.passed), "{}", print(&checks)),
@@ -233,7 +238,8 @@ fn a_stage_that_leaves_out_too_much_is_found() {
     let mut needs = whole.needs();
     needs.occlusion = false;
     let strategy = parse_from(MUTANTS, "right").expect("a strategy");
-    let checks = verify(&strategy, &whole.with_needs(needs), &Options::default()).expect("a sampler");
+    let blind = whole.with_needs(needs);
+    let checks = Verifier::new(&blind, Options::default()).verify(&strategy).expect("a sampler");
     let replay = checks.iter().find(|check| check.name == "replay").expect("the check");
     assert!(!replay.passed, "{replay}");
 }

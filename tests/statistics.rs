@@ -7,7 +7,7 @@ mod common;
 use citylights::base::statistics::sidak;
 use citylights::strategy::Claim;
 use citylights::strategy::registry::{self, STRATEGIES};
-use citylights::verify::{Options, Truth, verify};
+use citylights::verify::{Options, Truth, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{ground, panel, point, sixteen, spot, stage, stage_with};
@@ -21,10 +21,11 @@ fn all_pass(scene: &str, stage: &Stage, options: &Options) {
 /// Every strategy is looked at before the first failure is reported.
 fn pass(scene: &str, names: &[&str], stage: &Stage, options: &Options) {
     let mut failed = Vec::new();
+    let verifier = Verifier::new(stage, *options);
     println!("{scene}");
     for name in names {
         let strategy = registry::parse(name).expect(name);
-        let checks = verify(&strategy, stage, options).expect(name);
+        let checks = verifier.verify(&strategy).expect(name);
         for check in &checks {
             println!("{name:<16} {check}");
             if !check.passed {

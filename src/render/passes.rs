@@ -6,7 +6,7 @@ use super::kernel::{Kernel, kernel};
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Block, Frame, PickBuffer, Worker};
+use crate::strategy::erased::{AnySampler, Block, Frame, PickBuffer, Worker, blocks};
 use crate::strategy::tally::Tally;
 use crate::visibility::stage::Stage;
 use glam::DVec3;
@@ -78,13 +78,9 @@ impl Plan<'_> {
 
     /// The next `passes` passes of a film in blocks that the sampler can begin together.
     fn blocks(&self, passes: u32, film: &mut Film) -> impl Iterator<Item = Range<u32>> + use<> {
-        let (mut next, end, most) = (film.next, film.next + passes, self.sampler.most_passes());
-        film.next = end;
-        std::iter::from_fn(move || {
-            let block = next..end.min(next.saturating_add(most));
-            next = block.end;
-            (!block.is_empty()).then_some(block)
-        })
+        let first = film.next;
+        film.next = first + passes;
+        blocks(self.sampler, first..film.next)
     }
 }
 

@@ -10,6 +10,7 @@ pub mod needs;
 pub mod receiver;
 #[cfg(feature = "recipe")]
 pub mod recipe;
+pub mod small;
 
 use crate::base::error::{Error, Result};
 use camera::Camera;
@@ -161,6 +162,22 @@ impl Scene {
             .filter(|g| !g.range.is_empty())
             .collect();
         Ok(Self { name, seed, origin, lights: table, groups, surfaces, materials, camera, ev100, notes })
+    }
+
+    /// What the scene is made from, with the notes so far: to make another like it.
+    pub fn parts(&self) -> Parts {
+        Parts {
+            name: self.name.clone(),
+            seed: self.seed,
+            origin: self.origin,
+            lights: self.lights.iter().map(Light::shape).collect(),
+            groups: self.groups.clone(),
+            surfaces: self.surfaces.clone(),
+            materials: self.materials.clone(),
+            camera: self.camera,
+            ev100: self.ev100,
+            notes: self.notes.clone(),
+        }
     }
 
     /// The scene's name.

@@ -75,6 +75,16 @@ pub trait AnySampler: Send + Sync {
     }
 }
 
+/// Passes in blocks that a sampler can begin together.
+pub fn blocks(sampler: &dyn AnySampler, passes: Range<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
+    let (mut next, end, most) = (passes.start, passes.end, sampler.most_passes());
+    std::iter::from_fn(move || {
+        let block = next..end.min(next.saturating_add(most));
+        next = block.end;
+        (!block.is_empty()).then_some(block)
+    })
+}
+
 /// A sampler in a block of passes.
 pub trait Block: Send + Sync {
     /// A worker with its own scratch, one a thread, that counts its work or does not.

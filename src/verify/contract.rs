@@ -1,6 +1,6 @@
 //! Does a sampler keep the promises that hold exactly?
 
-use super::observe::{PLENTY, Site, freedom};
+use super::observe::{Site, freedom};
 use super::truth::grey;
 use super::weights::ROUNDING;
 use super::{Check, Options, Subject, spread};
@@ -10,7 +10,7 @@ use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
 use crate::strategy::Pick;
-use crate::strategy::erased::PickBuffer;
+use crate::strategy::erased::{Frame, PickBuffer};
 use glam::DVec3;
 
 /// The checks' names.
@@ -20,7 +20,7 @@ const SEED: &str = "same-seed";
 const THREADS: &str = "threads";
 const REPLAY: &str = "replay";
 const ALLOCATION: &str = "allocation";
-const PICKS: &str = "picks";
+pub(super) const PICKS: &str = "picks";
 const RECIPROCAL: &str = "reciprocal";
 
 /// Passes that are looked at.
@@ -37,65 +37,56 @@ pub fn picks_valid(picks: &[Pick]) -> usize {
 }
 
 /// The checks that need no statistics.
-pub(super) fn exact(subject: &Subject<'_>) -> Vec<Check> {
-    let mut checks = vec![ids_and_weights(subject)];
-    if checks[0].iter().any(|check| !check.passed && check.name == IDS) {
-        return checks.remove(0);
+pub(super) fn exact(subject: &Subject<'_, '_>) -> Vec<Check> {
+    let [ids, valid] = ids_and_weights(subject);
+    if !ids.passed {
+        return vec![ids, valid];
     }
-    checks.push(vec![same_seed(subject), threads(subject), replay(subject)]);
-    if let Some(counter) = subject.options.allocations {
-        checks.push(vec![allocation(subject, counter)]);
+    let mut checks = vec![ids, valid, same_seed(subject), threads(subject), replay(subject)];
+    if let Some(counter) = subject.verifier.options.allocations {
+        checks.push(allocation(subject, counter));
     }
-    checks.into_iter().flatten().collect()
+    checks
 }
 
-fn ids_and_weights(subject: &Subject<'_>) -> Vec<Check> {
-    let buffer = filled(subject, subject.receivers);
-    let picks: Vec<Pick> = buffer.calls().flatten().copied().collect();
-    let lights = subject.stage.scene().lights().len();
-    let of = format!("of {} picks at {} receivers", picks.len(), subject.receivers.len());
-    vec![
+fn ids_and_weights(subject: &Subject<'_, '_>) -> [Check; 2] {
+    let picks = subject.calls(subject.stage().receivers(), subject.receivers(), 0..PASSES).concat();
+    let lights = subject.stage().scene().lights().len();
+    let of = format!("of {} picks at {} receivers", picks.len(), subject.receivers().len());
+    [
         Check::new(IDS, picks_in_range(&picks, lights) as f64, 0.0, format!("ids beyond the {lights} lights, {of}")),
         Check::new(VALID, picks_valid(&picks) as f64, 0.0, format!("weights below 0 or not finite, {of}")),
     ]
 }
 
-fn filled(subject: &Subject<'_>, receivers: &[Receiver]) -> PickBuffer {
-    let mut buffer = PickBuffer::default();
-    subject.begin(0..PASSES).worker(false).fill(receivers, 0..PASSES, true, &mut buffer);
-    buffer
-}
-
-fn list(buffer: &PickBuffer) -> Vec<Vec<Pick>> {
-    buffer.calls().map(<[Pick]>::to_vec).collect()
-}
-
 /// The same picks again from a new worker, from one that comes the other way round, and pass by pass.
-fn same_seed(subject: &Subject<'_>) -> Check {
-    let first = list(&filled(subject, subject.receivers));
-    let again = list(&filled(subject, subject.receivers));
-    let mut differ = first.iter().zip(&again).filter(|(a, b)| a != b).count();
-    let backwards: Vec<Receiver> = subject.receivers.iter().rev().copied().collect();
-    let back = list(&filled(subject, &backwards));
-    let chunks = || first.chunks(PASSES as usize);
-    differ += chunks().zip(back.rchunks(PASSES as usize)).filter(|(a, b)| a != b).count();
-    let block = subject.begin(0..PASSES);
-    let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
-    for (at, calls) in subject.receivers.iter().zip(chunks()) {
-        for (pass, call) in (0..PASSES).zip(calls) {
-            worker.fill(&[*at], pass..pass + 1, true, &mut buffer);
-            differ += usize::from(buffer.calls().next() != Some(&call[..]));
-        }
+fn same_seed(subject: &Subject<'_, '_>) -> Check {
+    let (frame, receivers) = (subject.stage().receivers(), subject.receivers());
+    let first = subject.calls(frame, receivers, 0..PASSES);
+    let mut differ = count_different(&first, &subject.calls(frame, receivers, 0..PASSES));
+    let backwards: Vec<Receiver> = receivers.iter().rev().copied().collect();
+    let back = subject.calls(frame, &backwards, 0..PASSES);
+    let turned: Vec<Vec<Pick>> = back.rchunks(PASSES as usize).flatten().cloned().collect();
+    differ += count_different(&first, &turned);
+    for pass in 0..PASSES {
+        let alone = subject.calls(frame, receivers, pass..pass + 1);
+        let among: Vec<Vec<Pick>> = first.iter().skip(pass as usize).step_by(PASSES as usize).cloned().collect();
+        differ += count_different(&among, &alone);
     }
-    let detail = format!("calls that differ when repeated, reversed or cut into passes; seed {}", subject.options.seed);
+    let seed = subject.verifier.options.seed;
+    let detail = format!("calls that differ when repeated, reversed or cut into passes; seed {seed}");
     Check::new(SEED, differ as f64, 0.0, detail)
 }
 
+fn count_different(a: &[Vec<Pick>], b: &[Vec<Pick>]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
 /// One thread, two threads and a split of the passes: the same bytes.
-fn threads(subject: &Subject<'_>) -> Check {
+fn threads(subject: &Subject<'_, '_>) -> Check {
     // More than one tile of 64.
-    let receivers = spread(subject.stage.receivers(), 160);
-    let plan = Plan { stage: subject.stage, receivers: &receivers, sampler: subject.sampler, key: subject.key() };
+    let receivers = spread(subject.stage().receivers(), 160);
+    let plan = Plan { stage: subject.stage(), receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
     let film = |run: &dyn Fn(&mut Film)| {
         let mut film = Film::new(receivers.len());
         run(&mut film);
@@ -116,21 +107,20 @@ fn threads(subject: &Subject<'_>) -> Check {
 }
 
 /// The renderer's film against the same picks shaded one by one, every kind compiled in and every ray cast.
-fn replay(subject: &Subject<'_>) -> Check {
-    let plan =
-        Plan { stage: subject.stage, receivers: subject.receivers, sampler: subject.sampler, key: subject.key() };
-    let mut film = Film::new(subject.receivers.len());
-    plan.run(PASSES, &mut film);
-    let buffer = filled(subject, subject.receivers);
-    let mut calls = buffer.calls();
-    let lights = subject.stage.scene().lights();
+fn replay(subject: &Subject<'_, '_>) -> Check {
+    let (stage, receivers) = (subject.stage(), subject.receivers());
+    let mut film = Film::new(receivers.len());
+    Plan { stage, receivers, sampler: subject.sampler, key: subject.key(0) }.run(PASSES, &mut film);
+    // The film's frame is its receivers.
+    let calls = subject.calls(receivers, receivers, 0..PASSES);
+    let lights = stage.scene().lights();
     let mut rays = 0;
     let mut worst = 0.0f64;
-    for (at, shown) in subject.receivers.iter().zip(film.image()) {
+    for ((at, calls), shown) in receivers.iter().zip(calls.chunks(PASSES as usize)).zip(film.image()) {
         let mut sum = DVec3::ZERO;
-        for pick in calls.by_ref().take(PASSES as usize).flatten() {
+        for pick in calls.iter().flatten() {
             let light = &lights[pick.light as usize];
-            sum += shadowed(subject.stage, at, light, pick.uv, &mut rays) * f64::from(pick.weight);
+            sum += shadowed(stage, at, light, pick.uv, &mut rays) * f64::from(pick.weight);
         }
         let (wanted, found) = (grey(sum / f64::from(PASSES)), grey(shown.as_dvec3()));
         worst = worst.max((found - wanted).abs() / wanted.max(f64::MIN_POSITIVE));
@@ -139,13 +129,15 @@ fn replay(subject: &Subject<'_>) -> Check {
 }
 
 /// Allocations of a warm worker, by a counter of this thread's allocations.
-fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
-    let block = subject.begin(0..PASSES);
+fn allocation(subject: &Subject<'_, '_>, counter: fn() -> u64) -> Check {
+    let passes = 0..PASSES.min(subject.sampler.most_passes());
+    let receivers = subject.receivers();
+    let block = subject.sampler.begin(Frame::new(subject.stage().receivers(), subject.key(0)), passes.clone());
     let found = allocations(counter, || {
-        let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
-        move || worker.fill(subject.receivers, 0..PASSES, true, &mut buffer)
+        let (mut worker, mut buffer, passes) = (block.worker(false), PickBuffer::default(), passes.clone());
+        move || worker.fill(receivers, passes.clone(), true, &mut buffer)
     });
-    let calls = subject.receivers.len() * PASSES as usize;
+    let calls = receivers.len() * passes.len();
     Check::new(ALLOCATION, found as f64, 0.0, format!("allocations of a warm worker in {calls} calls"))
 }
 
@@ -160,22 +152,18 @@ pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -
 }
 
 /// The sum of the expected counts against the mean number of picks, at each receiver.
-pub(super) fn picks(sites: &[Site], options: &Options) -> Check {
-    let freedom = freedom(sites);
-    let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom);
+pub(super) fn picks(sites: &[Site<'_>], options: &Options) -> Check {
+    let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom(sites));
     let mut worst = (0.0f64, String::new());
     for site in sites {
-        let Some(counts) = &site.expected else { continue };
+        let Some(counts) = site.expected() else { continue };
         let wanted: f64 = counts.iter().map(|&c| f64::from(c)).sum();
-        let mut variance = site.picks.variance / site.picks.n as f64;
-        if wanted * site.draws() < PLENTY {
-            variance = variance.max(wanted / site.draws());
-        }
-        let error = (variance + (ROUNDING * wanted).powi(2)).sqrt();
-        let off = site.picks.mean - wanted;
+        let picks = site.picks();
+        let error = (site.variance(picks, wanted, 1.0) + (ROUNDING * wanted).powi(2)).sqrt();
+        let off = picks.mean - wanted;
         let t = if off == 0.0 { 0.0 } else { (off / error).abs() };
         if t.is_nan() || t > worst.0 {
-            worst = (t, format!("; worst at pixel {}: {:.5} for {wanted:.5}", site.at.pixel, site.picks.mean));
+            worst = (t, format!("; worst at pixel {}: {:.5} for {wanted:.5}", site.at.pixel, picks.mean));
         }
     }
     let detail = format!("greatest |t| of mean picks against expected ones, seed {}{}", options.seed, worst.1);
@@ -183,7 +171,7 @@ pub(super) fn picks(sites: &[Site], options: &Options) -> Check {
 }
 
 /// Each pick's weight against the reciprocal of its expected count, as independent picks have it.
-pub(super) fn reciprocal(sites: &[Site]) -> Check {
+pub(super) fn reciprocal(sites: &[Site<'_>]) -> Check {
     let worst = sites.iter().map(|site| site.worst_reciprocal).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
     let detail = format!("greatest |weight x expected count - 1| of a pick; light {}", worst.1);
     // f32 counts and weights; an entry of 10^-10 of a cumulative sum in f64 keeps five digits.

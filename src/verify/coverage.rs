@@ -4,13 +4,15 @@ use super::Check;
 use super::observe::Site;
 
 /// The check's name.
-const COVERAGE: &str = "coverage";
+pub(super) const COVERAGE: &str = "coverage";
 
-/// Where expected counts cannot be told, a light with this share of the radiance must have been seen.
+/// Where expected counts cannot be told, a light with this share of the radiance must have been seen, in enough draws to
+/// see it a hundred times were lights picked by what they add.
 const NOTICEABLE: f64 = 0.01;
+const OFTEN: f64 = 100.0;
 
 /// Counts the lights that add something at a receiver and have no chance there.
-pub(super) fn coverage(sites: &[Site]) -> Check {
+pub(super) fn coverage(sites: &[Site<'_>]) -> Check {
     let mut missing = 0u64;
     let mut hypotheses = 0u64;
     let mut first = None;
@@ -18,9 +20,9 @@ pub(super) fn coverage(sites: &[Site]) -> Check {
         let total = site.truth.total();
         for (light, value) in site.truth.lights().iter().enumerate().filter(|(i, _)| site.truth.adds(*i)) {
             hypotheses += 1;
-            let covered = match &site.expected {
+            let covered = match site.expected() {
                 Some(counts) => counts[light] > 0.0,
-                None => site.seen[light] || *value < NOTICEABLE * total,
+                None => site.seen[light] || *value < NOTICEABLE.max(OFTEN / site.draws()) * total,
             };
             if !covered {
                 missing += 1;

@@ -5,33 +5,29 @@ use super::{Check, Options};
 use crate::base::statistics::{sidak, student_quantile};
 
 /// The checks' names.
-const WEIGHTS: &str = "weights";
-const TOTAL: &str = "weights-total";
+pub(super) const WEIGHTS: &str = "weights";
+pub(super) const TOTAL: &str = "weights-total";
 
 /// f32 rounding of weights and expected counts, as a share of a sum.
 pub(super) const ROUNDING: f64 = 1e-5;
 
 /// Two checks: bins of lights, each at each receiver; and all picks together.
-pub(super) fn weights(sites: &[Site], options: &Options) -> [Check; 2] {
+pub(super) fn weights(sites: &[Site<'_>], options: &Options) -> [Check; 2] {
     [bins(sites, options), total(sites, options)]
 }
 
-fn bins(sites: &[Site], options: &Options) -> Check {
-    let hypotheses: usize = sites.iter().map(|site| site.bins.len()).sum();
+fn bins(sites: &[Site<'_>], options: &Options) -> Check {
+    let hypotheses: usize = sites.iter().map(|site| site.bins().len()).sum();
     let freedom = freedom(sites);
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), freedom);
     let mut worst = (0.0f64, String::new());
     for site in sites {
-        for bin in &site.bins {
-            let found = bin.found.moments(site.batches, site.calls);
+        for bin in site.bins() {
+            let found = site.found(bin);
+            let variance = site.variance(found, bin.expected, bin.chance);
+            // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
-            let mut variance = found.variance / found.n as f64;
-            let mut skewness = 0.0;
-            // Few picks show neither their variance nor their lopsidedness: they are Poisson's.
-            if site.expected.is_some() && picks < PLENTY {
-                variance = variance.max(bin.expected * bin.chance / site.draws());
-                skewness = bin.chance / picks.sqrt();
-            }
+            let skewness = if picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
             let z = (found.mean - bin.expected) / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
             // Johnson, JASA 73, 1978: a mean's statistic without its skewness, to first order.
             let z = z - skewness / 6.0 * (z * z - 1.0);
@@ -54,13 +50,14 @@ fn bins(sites: &[Site], options: &Options) -> Check {
 ///
 /// Paired with the number of those picks, whose own mean `picks` checks: what the luck of the draw adds to both cancels,
 /// and for independent picks nothing but rounding is left.
-fn total(sites: &[Site], options: &Options) -> Check {
-    let known = sites.iter().filter(|site| site.expected.is_some());
+fn total(sites: &[Site<'_>], options: &Options) -> Check {
+    let known = sites.iter().filter(|site| site.expected().is_some());
     let (mut excess, mut variance, mut count) = (0.0, 0.0, 0.0);
     for site in known {
-        excess += site.excess.mean;
-        variance += site.excess.variance / site.excess.n as f64;
-        count += site.contributing.mean;
+        let found = site.excess();
+        excess += found.mean;
+        variance += found.variance / found.n as f64;
+        count += site.contributing().mean;
     }
     let limit = student_quantile(1.0 - 0.5 * options.level, freedom(sites));
     if count == 0.0 {

@@ -1,0 +1,163 @@
+//! Which lights are tested together, and which are hit too rarely for a t test?
+
+use super::observe::toss;
+use super::truth::Truth;
+use crate::base::statistics::Moments;
+
+/// Lights expected fewer times than this in all draws share a bin of the weights check.
+const BIN: f64 = 30.0;
+
+/// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
+/// the estimate, on both sides of the comparison; the other checks still hold them.
+const SKEWNESS: f64 = 0.25;
+
+/// The lights that add something and can be picked, in bins.
+///
+/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1.
+pub(super) struct Pool {
+    bins: Vec<Bin>,
+    /// Of each light; `u32::MAX` is none.
+    bin_of: Vec<u32>,
+}
+
+/// Lights that are tested together.
+#[derive(Clone, Default)]
+pub(super) struct Bin {
+    /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count.
+    pub(super) expected: f64,
+    pub(super) chance: f64,
+    /// One of the lights.
+    pub(super) first: u32,
+    /// The sum over the current batch; sum and sum of squares over batches.
+    batch: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Bin {
+    /// The moments of the batches' values divided by the calls of a batch.
+    pub(super) fn moments(&self, batches: u32, calls: u32) -> Moments {
+        let (n, calls) = (f64::from(batches), f64::from(calls));
+        let mean = self.sum / n;
+        let variance = ((self.squares - n * mean * mean) / (n - 1.0).max(1.0)).max(0.0);
+        Moments { n: batches as usize, mean: mean / calls, variance: variance / (calls * calls) }
+    }
+}
+
+impl Pool {
+    /// Bins of lights sorted by `counts`, the expected picks a call; `draws` calls are made.
+    pub(super) fn new(truth: &Truth, counts: &[f32], draws: f64) -> Self {
+        let count = |light: usize| f64::from(counts[light]);
+        let mut order: Vec<usize> = (0..counts.len()).filter(|&i| truth.adds(i) && counts[i] > 0.0).collect();
+        order.sort_by(|&a, &b| counts[a].total_cmp(&counts[b]));
+        let mut bins: Vec<Bin> = Vec::new();
+        let mut bin_of = vec![u32::MAX; counts.len()];
+        let mut left: f64 = order.iter().map(|&light| count(light)).sum();
+        for light in order {
+            let full_enough = bins.last().is_none_or(|bin| bin.expected * draws >= BIN);
+            // What would not fill another joins the last.
+            if bins.is_empty() || full_enough && left * draws >= BIN {
+                bins.push(Bin { first: light as u32, ..Bin::default() });
+            }
+            left -= count(light);
+            let at = bins.len() - 1;
+            bins[at].expected += count(light);
+            bins[at].chance += count(light) * (1.0 - count(light)).max(0.0);
+            bin_of[light] = at as u32;
+        }
+        bins.iter_mut().for_each(|bin| bin.chance /= bin.expected);
+        Self { bins, bin_of }
+    }
+
+    pub(super) fn bins(&self) -> &[Bin] {
+        &self.bins
+    }
+
+    /// Adds a pick of a light: its weight times its expected count.
+    pub(super) fn add(&mut self, light: usize, unit: f64) {
+        if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
+            bin.batch += unit;
+        }
+    }
+
+    /// Ends a batch.
+    pub(super) fn close(&mut self) {
+        for bin in &mut self.bins {
+            bin.sum += bin.batch;
+            bin.squares += bin.batch * bin.batch;
+            bin.batch = 0.0;
+        }
+    }
+}
+
+/// The lights whose part of the estimate is nearly normal after all draws, and that part's moments.
+pub(super) struct Steady {
+    lights: Vec<bool>,
+    /// Variance and third central moment in a call, were the picks independent and always as many.
+    pub(super) variance: f64,
+    pub(super) third: f64,
+    /// Variance of a batch's mean, were each light picked as evenly as whole numbers can be.
+    pub(super) spread: f64,
+}
+
+impl Steady {
+    /// Leaves out lights, those with the greatest single hits first, until the mean of all draws is no longer lopsided.
+    /// Where `counts` are not `told` but seen, lights that were not seen are left out too.
+    pub(super) fn new(truth: &Truth, counts: &[f32], told: bool, calls: u32, draws: f64) -> Self {
+        let f = truth.lights();
+        // A light of no chance at all is for the coverage check; a listed one never varies.
+        let mut order: Vec<usize> = (0..f.len()).filter(|&i| counts[i] > 0.0 && counts[i] < 0.5).collect();
+        let hit = |i: usize| f[i] / f64::from(counts[i]);
+        order.sort_by(|&a, &b| hit(b).total_cmp(&hit(a)));
+        let total: f64 = order.iter().map(|&i| f64::from(counts[i])).sum();
+        let mut lights: Vec<bool> = counts.iter().map(|&count| told || count > 0.0).collect();
+        let mut left_out = 0;
+        loop {
+            let kept = &order[left_out..];
+            let mean = kept.iter().map(|&i| f[i]).sum::<f64>() / total;
+            let gone: f64 = order[..left_out].iter().map(|&i| f64::from(counts[i])).sum();
+            // Picks of lights that are left out add 0.
+            let (mut variance, mut third) = (gone * mean * mean, -gone * mean * mean * mean);
+            for &i in kept {
+                let (count, off) = (f64::from(counts[i]), hit(i) - mean);
+                variance += count * off * off;
+                third += count * off * off * off;
+            }
+            // Variance below rounding, as where lights are chosen by exactly what they add, is none.
+            let flat = variance <= 1e-10 * mean * mean * total;
+            if kept.is_empty() || flat || third.abs() <= SKEWNESS * variance.powf(1.5) * draws.sqrt() {
+                let (variance, third) = if kept.is_empty() || flat { (0.0, 0.0) } else { (variance, third) };
+                let spread = spread(f, counts, &lights, calls);
+                return Self { lights, variance, third, spread };
+            }
+            // A thirty-second at a time keeps this near linear in the lights.
+            let step = (kept.len() / 32).max(1);
+            order[left_out..left_out + step].iter().for_each(|&i| lights[i] = false);
+            left_out += step;
+        }
+    }
+
+    /// Whether a light is among them.
+    pub(super) fn holds(&self, light: usize) -> bool {
+        self.lights[light]
+    }
+}
+
+/// Variance of the mean over `calls` calls, were each light picked one of the two whole numbers of times around its
+/// expectation: what numbers that are spread evenly leave, and batches may by luck not show.
+fn spread(f: &[f64], counts: &[f32], lights: &[bool], calls: u32) -> f64 {
+    let picked = || (0..f.len()).filter(|&i| counts[i] > 0.0);
+    let value = |i: usize| if lights[i] { f[i] } else { 0.0 };
+    let total: f64 = picked().map(|i| f64::from(counts[i])).sum();
+    let mean = picked().map(value).sum::<f64>() / total.max(f64::MIN_POSITIVE);
+    let calls = f64::from(calls);
+    picked()
+        .map(|i| {
+            let count = f64::from(counts[i]);
+            let off = value(i) / count - mean;
+            // Only the part that rounding leaves: a listed light has none.
+            if count >= 1.0 { 0.0 } else { toss(count * calls) * off * off }
+        })
+        .sum::<f64>()
+        / (calls * calls)
+}
