@@ -7,7 +7,7 @@ mod common;
 mod runs;
 
 use citylights::strategy::registry::parse;
-use citylights::verify::{Options, Truth, verify};
+use citylights::verify::{Options, Truth, Verifier};
 use common::{expected, ground, point, sixteen, stage};
 use glam::Vec3;
 use runs::Runs;
@@ -16,7 +16,7 @@ use runs::Runs;
 fn the_oracle_keeps_its_contract() {
     let stage = stage(sixteen());
     for name in ["oracle", "oracle:mix=0.001", "oracle:mix=0.5"] {
-        let checks = verify(&parse(name).expect(name), &stage, &Options::default()).expect(name);
+        let checks = Verifier::new(&stage, Options::default()).verify(&parse(name).expect(name)).expect(name);
         let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
         assert!(checks.len() > 10 && failed.is_empty(), "{name}\n{}", failed.join("\n"));
     }
