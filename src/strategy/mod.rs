@@ -29,6 +29,7 @@ pub mod restir;
 pub mod stochastic_cull;
 pub mod tally;
 mod target;
+pub mod tree;
 pub mod uniform;
 
 use crate::base::draws::Draws;
