@@ -78,7 +78,7 @@ fn parts<const N: usize>(items: &mut [Item], depth: u32) -> Vec<Part> {
     let mut parts = Vec::with_capacity(N);
     parts.push(Part { range: 0..items.len(), bounds: Bounds::of(items) });
     while parts.len() < N {
-        let Some(costliest) = costliest(&parts) else { break };
+        let Some(costliest) = next::<N>(&parts) else { break };
         let range = parts[costliest].range.clone();
         let own = &mut items[range.clone()];
         let middle = range.start + if depth < BY_COST { split(own) } else { own.len() / 2 };
@@ -89,10 +89,12 @@ fn parts<const N: usize>(items: &mut [Item], depth: u32) -> Vec<Part> {
     parts
 }
 
-/// The part to cut next: the first of greatest cost; among those that cost nothing, of lights in one place, the largest.
-fn costliest(parts: &[Part]) -> Option<usize> {
+/// The part to cut next, if any is worth it: of those that do not fit a node, the first of greatest cost, or the largest
+/// where they cost nothing, being all in one place. Of the others the smallest, if its lights all find room: a node less.
+fn next<const N: usize>(parts: &[Part]) -> Option<usize> {
+    let room = N - parts.len();
     let mut best: Option<(f64, usize, usize)> = None;
-    for (i, part) in parts.iter().enumerate().filter(|(_, part)| part.range.len() > 1) {
+    for (i, part) in parts.iter().enumerate().filter(|(_, part)| part.range.len() > N) {
         let (cost, len) = (part.bounds.cost(), part.range.len());
         let better = |&(most, longest, _): &(f64, usize, usize)| {
             cost > most * (1.0 + TIE) || (most == 0.0 && cost == 0.0 && len > longest)
@@ -101,5 +103,9 @@ fn costliest(parts: &[Part]) -> Option<usize> {
             best = Some((cost, len, i));
         }
     }
-    best.map(|(_, _, i)| i)
+    let smallest = || {
+        let small = parts.iter().enumerate().filter(|(_, part)| part.range.len() > 1);
+        small.min_by_key(|(_, part)| part.range.len()).filter(|(_, part)| part.range.len() <= room + 1)
+    };
+    best.map(|(_, _, i)| i).or_else(|| smallest().map(|(i, _)| i))
 }

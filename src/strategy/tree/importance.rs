@@ -24,9 +24,9 @@ pub enum Weighing {
 /// At which distance a cluster is weighed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Distance {
-    /// At that of its centre, softened by its size.
+    /// At the geometric mean of the least and the greatest distance of its box.
     #[default]
-    Centre,
+    Mean,
     /// Half the picks at the least distance of its box, half at the greatest (Lin and Yuksel, I3D 2020).
     MinMax,
 }
@@ -47,11 +47,8 @@ pub struct How {
 /// finds above a horizon by rounding alone must not be rejected here.
 const MARGIN: f32 = 2e-6;
 
-/// By how much the squared half diagonal of a cluster softens its squared distance.
-const SOFTENING: f32 = 0.5;
-
-/// Least squared distance at which a cluster is weighed, as a share of its squared half diagonal.
-const NEAREST: f32 = 1.0 / 16.0;
+/// Least squared distance at which a cluster around the receiver is weighed, as a share of its squared half diagonal.
+const NEAREST: f32 = 0.05;
 
 /// The estimates of a node's slots, 0 where no light of a slot can add anything.
 pub(super) struct Weights<const N: usize> {
@@ -65,9 +62,9 @@ pub(super) struct Weights<const N: usize> {
 #[inline]
 pub(super) fn weigh<const N: usize>(node: &Node<N>, at: &Receiver, how: How) -> Weights<N> {
     match (how.weighing, how.distance) {
-        (Weighing::Box, Distance::Centre) => by_box::<N, false>(node, at),
+        (Weighing::Box, Distance::Mean) => by_box::<N, false>(node, at),
         (Weighing::Box, Distance::MinMax) => by_box::<N, true>(node, at),
-        (Weighing::Classic, Distance::Centre) => classic::<N, false>(node, at),
+        (Weighing::Classic, Distance::Mean) => classic::<N, false>(node, at),
         (Weighing::Classic, Distance::MinMax) => classic::<N, true>(node, at),
     }
 }
@@ -83,10 +80,11 @@ fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Mean over an interval around `middle` of what is above 0; the interval ends at `bottom` < `top`, and `top` > 0.
+/// Of an interval from `bottom` to `top` > 0: the share above 0 and the mean over that.
 #[inline(always)]
-fn mean_above(middle: f32, bottom: f32, top: f32) -> f32 {
-    if bottom >= 0.0 { middle } else { 0.5 * top * top / (top - bottom) }
+fn above(bottom: f32, top: f32) -> (f32, f32) {
+    let from = larger(bottom, 0.0);
+    ((top - from) / (top - bottom), 0.5 * (top + from))
 }
 
 #[inline(always)]
@@ -105,34 +103,40 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
         let (d, r) = (d2.sqrt(), r2.sqrt());
         let margin = MARGIN * (d + r);
 
-        // Heights over the receiver's horizon.
+        // Heights of the box over the receiver's horizon.
         let height = nx * vx + ny * vy + nz * vz;
-        let above = mx * hx + my * hy + mz * hz + margin;
-        let top = height + above;
+        let half_height = mx * hx + my * hy + mz * hz + margin;
+        let top = height + half_height;
+        let (share, mean) = above(height - half_height, top);
 
-        // The same over the emitters' horizon: d times cosine less cut, over a box of places times a box of directions.
+        // The same over the emitters' horizon: distance times (cosine less cut), over places and directions.
         let cut = node.cut[j];
         let facing = -(wx * vx + wy * vy + wz * vz) - cut * d;
-        let around = wx.abs() * hx + wy.abs() * hy + wz.abs() * hz
+        let half_facing = wx.abs() * hx + wy.abs() * hy + wz.abs() * hz
             + ax * (vx.abs() + hx) + ay * (vy.abs() + hy) + az * (vz.abs() + hz)
             + cut.abs() * r + margin;
-        let lit = facing + around;
+        let lit = facing + half_facing;
+        let (lit_share, lit_mean) = above(facing - half_facing, lit);
 
-        let soft2 = d2 + SOFTENING * r2;
-        let soft = soft2.sqrt();
-        let emission = smaller(1.0, node.gain[j] * mean_above(facing, facing - around, lit) / soft);
-        let arriving = node.peak[j] * emission * (mean_above(height, height - above, top) / soft);
+        let near2 = box_distance2([vx, vy, vz], [hx, hy, hz], -1.0);
+        let far2 = box_distance2([vx, vy, vz], [hx, hy, hz], 1.0);
+        // What is near decides: where the box begins at the receiver, cosines are those of lights right in front of it.
+        let typical = (near2 * far2).sqrt().sqrt();
+        let cosine = share * smaller(1.0, mean / typical);
+        let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean / typical);
+        let arriving = node.peak[j] * emission * cosine;
         // Not 0 by underflow, nor beyond f32: only what is rejected weighs nothing.
         let keep = |value: f32| {
             let value = larger(smaller(value, f32::MAX), f32::MIN_POSITIVE);
             if (top > 0.0) & (lit > 0.0) { value } else { 0.0 }
         };
+        let floored2 = larger(near2, NEAREST * r2);
         if MINMAX {
-            let (near2, far2) = (box_distance2([vx, vy, vz], [hx, hy, hz], -1.0), box_distance2([vx, vy, vz], [hx, hy, hz], 1.0));
-            weights.near[j] = keep(arriving / larger(near2, NEAREST * r2));
+            weights.near[j] = keep(arriving / floored2);
             weights.far[j] = keep(arriving / far2);
         } else {
-            weights.far[j] = keep(arriving / soft2);
+            // The mean of 1/d^2 for distances evenly between the least and the greatest.
+            weights.far[j] = keep(arriving / (floored2 * far2).sqrt());
             weights.near[j] = weights.far[j];
         }
     }

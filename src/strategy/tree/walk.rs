@@ -18,8 +18,8 @@ const LEAST_SHARE: f64 = 1.0 / 1_073_741_824.0;
 /// A number whose slot had this probability or less has no digits to spare.
 const USED_UP: f64 = 1.0 / 65_536.0;
 
-/// Nodes whose shares are remembered; a power of two.
-const REMEMBERED: usize = 128;
+/// Slots whose shares are remembered, in nodes.
+const REMEMBERED: usize = 1024;
 
 /// What has been worked out at the receiver that was arrived at.
 ///
@@ -91,7 +91,7 @@ impl<const N: usize> Tree<N> {
         if memory.arrival == 0 || memory.kept.is_empty() {
             memory.arrival = 1;
             memory.kept.clear();
-            memory.kept.resize(REMEMBERED, Kept { node: 0, arrival: 0, shares: Shares { ends: [0.0; N], far: 0 } });
+            memory.kept.resize(REMEMBERED / N, Kept { node: 0, arrival: 0, shares: Shares { ends: [0.0; N], far: 0 } });
         }
         self.weigh_directional(at, &mut memory.directional);
         tally.weighed(self.directional.len() as u64);
@@ -271,7 +271,7 @@ impl<const N: usize> Tree<N> {
         tally: &mut T,
     ) -> &'m Shares<N> {
         tally.nodes(1);
-        let kept = &mut memory.kept[node % REMEMBERED];
+        let kept = &mut memory.kept[node % (REMEMBERED / N)];
         if kept.node != node as u32 || kept.arrival != memory.arrival {
             tally.weighed(N as u64);
             *kept = Kept { node: node as u32, arrival: memory.arrival, shares: self.work_out(&self.nodes[node], at) };
