@@ -19,6 +19,7 @@ pub mod influence;
 pub mod influence_pick;
 pub mod influence_tail;
 pub mod intensity;
+pub mod light_tree;
 pub mod null;
 pub mod oracle;
 pub mod parameters;

@@ -29,8 +29,6 @@ impl Item {
         if of.colour.max_element() <= 0.0 || of.kind() == Kind::Directional {
             return None;
         }
-        // A light too weak for f32 may still add something.
-        let peak = luminance(of.peak_intensity()).clamp(f32::MIN_POSITIVE, f32::MAX);
         let place = Vec3A::from(of.position);
         let (low, high, axis, cut, full) = match of.kind() {
             Kind::Triangle => {
@@ -45,12 +43,17 @@ impl Item {
             Kind::Spot => (place, place, Vec3A::from(of.a), of.b.z, of.c.x),
             Kind::Point | Kind::Directional => (place, place, Vec3A::ZERO, -1.0, 0.0),
         };
-        Some(Self { low, high, axis, cut, full, peak, light })
+        Some(Self { low, high, axis, cut, full, peak: peak(of), light })
     }
 
     pub(super) fn centre(&self) -> Vec3A {
         0.5 * self.low + 0.5 * self.high
     }
+}
+
+/// Luminance of a light's peak intensity in cd, never 0: one too weak for f32 may still add something.
+pub(super) fn peak(of: &Light) -> f32 {
+    luminance(of.peak_intensity()).clamp(f32::MIN_POSITIVE, f32::MAX)
 }
 
 /// The nearest f32 on the side to which `outward` steps, or the number itself.
@@ -130,8 +133,7 @@ impl Bounds {
         let (around, emission) = (self.cosine().min(1.0).acos(), self.cut.max(0.0).acos());
         let all = (around + emission).min(PI);
         let (sin, cos) = around.sin_cos();
-        2.0 * PI * (1.0 - cos)
-            + FRAC_PI_2 * (2.0 * (all - around) * sin - (around - 2.0 * all).cos() + cos)
+        2.0 * PI * (1.0 - cos) + FRAC_PI_2 * (2.0 * (all - around) * sin - (around - 2.0 * all).cos() + cos)
     }
 
     /// Cosine of a half-angle around the centre of the box of directions that holds them all.

@@ -112,9 +112,14 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
         // The same over the emitters' horizon: distance times (cosine less cut), over places and directions.
         let cut = node.cut[j];
         let facing = -(wx * vx + wy * vy + wz * vz) - cut * d;
-        let half_facing = wx.abs() * hx + wy.abs() * hy + wz.abs() * hz
-            + ax * (vx.abs() + hx) + ay * (vy.abs() + hy) + az * (vz.abs() + hz)
-            + cut.abs() * r + margin;
+        let half_facing = wx.abs() * hx
+            + wy.abs() * hy
+            + wz.abs() * hz
+            + ax * (vx.abs() + hx)
+            + ay * (vy.abs() + hy)
+            + az * (vz.abs() + hz)
+            + cut.abs() * r
+            + margin;
         let lit = facing + half_facing;
         let (lit_share, lit_mean) = above(facing - half_facing, lit);
 
@@ -179,7 +184,8 @@ fn classic<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) ->
         // The cone of directions: see `Bounds::cosine`.
         let w2 = wx * wx + wy * wy + wz * wz;
         let (w, a2) = (larger(w2, 1e-6).sqrt(), ax * ax + ay * ay + az * az);
-        let cone = if (w2 > 1e-6) & (node.cut[j] >= 0.0) { larger(0.5 * (1.0 + w2 - a2) / w - MARGIN, -1.0) } else { -1.0 };
+        let cone =
+            if (w2 > 1e-6) & (node.cut[j] >= 0.0) { larger(0.5 * (1.0 + w2 - a2) / w - MARGIN, -1.0) } else { -1.0 };
         let towards = larger(smaller(-(wx * vx + wy * vy + wz * vz) / (w * d), 1.0), -1.0);
         let emission = cos_minus(cos_minus(towards, cone), bound) + MARGIN;
         let cosine = smaller((nx * vx + ny * vy + nz * vz).abs() / d, 1.0);
@@ -189,7 +195,8 @@ fn classic<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) ->
             if emission > node.cut[j] { value } else { 0.0 }
         };
         if MINMAX {
-            let (near2, far2) = (box_distance2([vx, vy, vz], [hx, hy, hz], -1.0), box_distance2([vx, vy, vz], [hx, hy, hz], 1.0));
+            let (near2, far2) =
+                (box_distance2([vx, vy, vz], [hx, hy, hz], -1.0), box_distance2([vx, vy, vz], [hx, hy, hz], 1.0));
             weights.near[j] = keep(arriving / larger(near2, NEAREST * r2));
             weights.far[j] = keep(arriving / far2);
         } else {

@@ -19,6 +19,7 @@
 
 mod bounds;
 mod build;
+pub mod cut;
 pub mod importance;
 mod node;
 mod split;
@@ -27,9 +28,9 @@ pub mod walk;
 use crate::base::colour::luminance;
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
-use bounds::Item;
-use importance::How;
+use bounds::{Item, peak};
 use glam::Vec3;
+use importance::How;
 use node::{Node, Slot};
 
 /// A light tree of `N`-wide nodes.
@@ -95,9 +96,17 @@ impl<const N: usize> Tree<N> {
         self.order.is_empty()
     }
 
+    /// The lights in the tree's order, each with its peak intensity.
+    pub(in crate::strategy) fn peaks(&self, scene: &Scene) -> impl Iterator<Item = (LightId, f32)> {
+        self.order.iter().map(|&light| (light, peak(&scene.lights()[light as usize])))
+    }
+
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.order[..]) + size_of_val(&self.directional[..]) + size_of_val(&self.sums[..])
+        size_of_val(&self.nodes[..])
+            + size_of_val(&self.order[..])
+            + size_of_val(&self.directional[..])
+            + size_of_val(&self.sums[..])
     }
 }
 

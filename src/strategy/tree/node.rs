@@ -120,6 +120,32 @@ impl<const N: usize> Node<N> {
         r2 < share * d2 && nearest > 0.0 && lowest > 0.0 && alike
     }
 
+    /// Least and greatest distance of a slot's box, in metres.
+    pub(super) fn distances(&self, j: usize, at: &Receiver) -> [f32; 2] {
+        let to_centre = (Self::vector(&self.centre, j) - at.position).abs();
+        let half = Self::vector(&self.half, j);
+        [(to_centre - half).max(Vec3::ZERO).length(), (to_centre + half).length()]
+    }
+
+    /// The most irradiance that the lights of a slot can send, in lx: all of them at the nearest point of the box, with the
+    /// greatest cosines that any point of it has.
+    pub(super) fn upper_bound(&self, j: usize, at: &Receiver) -> f32 {
+        let [centre, half, axis, axis_half] =
+            [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
+        let to_centre = centre - at.position;
+        let [near, _] = self.distances(j, at);
+        let top = at.normal.dot(to_centre) + at.normal.abs().dot(half);
+        // Triangles alone: their emission is the cosine. Others may be full at any.
+        let emission = if self.cut[j] == 0.0 && self.gain[j] <= 1.0 {
+            let lit = axis_half.dot(to_centre.abs() + half) + axis.abs().dot(half) - axis.dot(to_centre);
+            (lit / near).min(1.0)
+        } else {
+            1.0
+        };
+        let bound = self.peak[j] * (top / near).min(1.0) * emission / (near * near);
+        if bound.is_finite() { bound.max(0.0) } else { f32::MAX }
+    }
+
     /// The lights below, as places in the tree's order.
     #[inline]
     pub(super) fn lights(&self) -> std::ops::Range<usize> {

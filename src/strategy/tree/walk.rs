@@ -47,7 +47,7 @@ impl<const N: usize> Default for Memory<N> {
 
 /// A choice among the slots of a node.
 #[derive(Clone)]
-struct Shares<const N: usize> {
+pub(super) struct Shares<const N: usize> {
     /// Weights summed up to each slot, in lx.
     ends: [f64; N],
     /// Bit `j`: slot `j` is far away.
@@ -55,13 +55,13 @@ struct Shares<const N: usize> {
 }
 
 impl<const N: usize> Shares<N> {
-    fn total(&self) -> f64 {
+    pub(super) fn total(&self) -> f64 {
         self.ends[N - 1]
     }
 
     /// Probability of a slot.
     #[inline]
-    fn share(&self, j: usize) -> f64 {
+    pub(super) fn share(&self, j: usize) -> f64 {
         let start = if j == 0 { 0.0 } else { self.ends[j - 1] };
         (self.ends[j] - start) / self.total()
     }
@@ -158,7 +158,13 @@ impl<const N: usize> Tree<N> {
     }
 
     /// Probability that [`pick`](Self::pick) gives the light in that place of the tree's order.
-    pub(super) fn probability<T: Tally>(&self, place: usize, at: &Receiver, memory: &mut Memory<N>, tally: &mut T) -> f64 {
+    pub(in crate::strategy) fn probability<T: Tally>(
+        &self,
+        place: usize,
+        at: &Receiver,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) -> f64 {
         let share = self.directional_share(at, memory, tally);
         (1.0 - share) * self.probability_below(0, place, at, memory, tally)
     }
@@ -239,6 +245,12 @@ impl<const N: usize> Tree<N> {
         }
     }
 
+    /// The directional lights that add something at the receiver that was arrived at.
+    pub(in crate::strategy) fn directional(&self, memory: &Memory<N>) -> impl Iterator<Item = LightId> {
+        let lights = self.directional.iter().enumerate();
+        lights.filter(|(i, _)| memory.directional.pmf(*i) > 0.0).map(|(_, light)| light.light)
+    }
+
     /// Probability that a directional light is chosen, not one of the tree.
     fn directional_share<T: Tally>(&self, at: &Receiver, memory: &mut Memory<N>, tally: &mut T) -> f64 {
         let directional = memory.directional.total();
@@ -263,7 +275,7 @@ impl<const N: usize> Tree<N> {
 
     /// The shares of a node: remembered, or worked out.
     #[inline]
-    fn shares<'m, T: Tally>(
+    pub(super) fn shares<'m, T: Tally>(
         &self,
         node: usize,
         at: &Receiver,
