@@ -19,6 +19,7 @@ pub mod influence;
 pub mod influence_pick;
 pub mod influence_tail;
 pub mod intensity;
+pub mod light_tree;
 pub mod null;
 pub mod oracle;
 pub mod parameters;
@@ -29,6 +30,7 @@ pub mod restir;
 pub mod stochastic_cull;
 pub mod tally;
 mod target;
+pub mod tree;
 pub mod uniform;
 
 use crate::base::draws::Draws;

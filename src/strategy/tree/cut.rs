@@ -1,0 +1,204 @@
+//! Which clusters stand for all lights here?
+//!
+//! A cut is a set of clusters and lights that has each light once, less those that can add nothing. It starts with the root's
+//! slots; the one that most needs it is replaced by its own slots until none does or there are enough. What needs it is the
+//! caller's to say, from the receiver alone: no random number may move a cut that random choices are made in.
+
+use super::Tree;
+use super::node::{Node, Slot};
+use super::walk::Memory;
+use crate::base::draws::Draws;
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use crate::strategy::tally::Tally;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A cut; its storage is reused from receiver to receiver.
+#[derive(Default)]
+pub struct Cut {
+    parts: BinaryHeap<Part>,
+}
+
+/// A slot of a node that is in a cut.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::strategy) struct Part {
+    /// How much it needs to be replaced; 0 for not at all.
+    need: f32,
+    node: u32,
+    slot: u32,
+}
+
+impl Part {
+    fn key(&self) -> (u32, u32) {
+        (self.node, self.slot)
+    }
+}
+
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.need.total_cmp(&other.need).then_with(|| other.key().cmp(&self.key()))
+    }
+}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+impl Cut {
+    /// The parts, in an order that depends on the receiver alone.
+    pub(in crate::strategy) fn parts(&self) -> &[Part] {
+        self.parts.as_slice()
+    }
+}
+
+impl<const N: usize> Tree<N> {
+    /// Works out the cut at the receiver that `memory` has arrived at: `most` parts at the most, or the root's slots if those
+    /// are more. `need` is asked for each cluster: its slot and its node.
+    pub(in crate::strategy) fn cut<T: Tally>(
+        &self,
+        at: &Receiver,
+        most: usize,
+        need: impl Fn(Cluster<'_, N>) -> f32,
+        cut: &mut Cut,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) {
+        cut.parts.clear();
+        if self.nodes.is_empty() {
+            return;
+        }
+        self.open(0, at, &need, cut, memory, tally);
+        while cut.parts.len() + N - 1 <= most
+            && let Some(part) = cut.parts.peek().filter(|part| part.need > 0.0).copied()
+            && let Slot::Node(offset) = self.slot(part)
+        {
+            cut.parts.pop();
+            self.open(part.node as usize + offset as usize, at, &need, cut, memory, tally);
+        }
+    }
+
+    /// Adds the slots of a node that can add anything.
+    fn open<T: Tally>(
+        &self,
+        node: usize,
+        at: &Receiver,
+        need: &impl Fn(Cluster<'_, N>) -> f32,
+        cut: &mut Cut,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) {
+        let shares = self.shares(node, at, memory, tally);
+        if shares.total() <= 0.0 {
+            return;
+        }
+        for slot in (0..N).filter(|&j| shares.share(j) > 0.0) {
+            let need = match self.nodes[node].slot(slot) {
+                Slot::Node(offset) => need(Cluster {
+                    parent: &self.nodes[node],
+                    slot,
+                    node: &self.nodes[node + offset as usize],
+                    weight: (shares.share(slot) * shares.total()) as f32,
+                }),
+                Slot::Light(_) | Slot::Empty => 0.0,
+            };
+            cut.parts.push(Part { need, node: node as u32, slot: slot as u32 });
+        }
+    }
+
+    fn slot(&self, part: Part) -> Slot {
+        self.nodes[part.node as usize].slot(part.slot as usize)
+    }
+
+    /// A light of a part and its probability there.
+    #[inline]
+    pub(in crate::strategy) fn pick_part<T: Tally>(
+        &self,
+        part: Part,
+        at: &Receiver,
+        u: f64,
+        draws: &mut Draws,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) -> Option<(LightId, f64)> {
+        match self.slot(part) {
+            Slot::Light(light) => Some((light, 1.0)),
+            Slot::Node(offset) => self.pick_below((part.node + offset) as usize, at, u, draws, memory, tally),
+            Slot::Empty => None,
+        }
+    }
+
+    /// Probability that the light in that place of the tree's order is picked from its part; 0 if it is in none.
+    pub(in crate::strategy) fn probability_in_parts<T: Tally>(
+        &self,
+        place: usize,
+        at: &Receiver,
+        cut: &Cut,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) -> f64 {
+        for &part in cut.parts() {
+            match self.slot(part) {
+                Slot::Light(light) if light == self.order[place] => return 1.0,
+                Slot::Node(offset) => {
+                    let node = (part.node + offset) as usize;
+                    if self.nodes[node].lights().contains(&place) {
+                        return self.probability_below(node, place, at, memory, tally);
+                    }
+                }
+                Slot::Light(_) | Slot::Empty => {}
+            }
+        }
+        0.0
+    }
+
+    /// Adds `scale` times the probabilities of [`pick_part`](Self::pick_part) to `counts`.
+    pub(in crate::strategy) fn expect_part(&self, part: Part, at: &Receiver, scale: f64, counts: &mut [f32]) {
+        match self.slot(part) {
+            Slot::Light(light) => counts[light as usize] += scale as f32,
+            Slot::Node(offset) => self.expect_below((part.node + offset) as usize, at, scale, counts),
+            Slot::Empty => {}
+        }
+    }
+}
+
+/// A cluster whose need is asked for.
+pub(in crate::strategy) struct Cluster<'a, const N: usize> {
+    pub(super) parent: &'a Node<N>,
+    pub(super) slot: usize,
+    pub(super) node: &'a Node<N>,
+    /// Its weight at the receiver, in lx.
+    pub(in crate::strategy) weight: f32,
+}
+
+impl<const N: usize> Cluster<'_, N> {
+    /// How uniform the cluster is at the receiver, from 0 to 1: the criterion of Conty Estevez and Kulla 2018, with the
+    /// variance taken relative to the squared mean, so that it has no unit.
+    ///
+    /// With E and V of the lights' intensities (e) and of 1/d^2 (g), d spread evenly over [a, b]: the variance of the product
+    /// is V_e E_g^2 + E_e^2 V_g + V_e V_g. Relative to the squared mean that is `e + g + e g`, and g is (b - a)^2 / (3 a b):
+    /// E[g^2] - E[g]^2 itself has no correct digit in f32 once a cluster is far.
+    pub(in crate::strategy) fn uniformity(&self, at: &Receiver) -> f32 {
+        let [near, far] = self.parent.distances(self.slot, at).map(f64::from);
+        if near <= 0.0 {
+            return 0.0;
+        }
+        let (e, g) = (f64::from(self.node.unevenness), (far - near).powi(2) / (3.0 * near * far));
+        (1.0 + (e + g + e * g).sqrt()).powf(-0.25) as f32
+    }
+
+    /// The most that the cluster can add, in lx.
+    pub(in crate::strategy) fn bound(&self, at: &Receiver) -> f32 {
+        self.parent.upper_bound(self.slot, at)
+    }
+}

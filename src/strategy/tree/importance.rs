@@ -1,0 +1,215 @@
+//! How is a cluster weighed at a receiver?
+//!
+//! By an estimate, in lx, of the irradiance that its lights send there with nothing in between: peak intensity times emission
+//! times the receiver's cosine over the squared distance. Clusters of points, spots and triangles compare, since all are in
+//! one unit: weighed by flux, a lamp would count for four windows. Both ways of weighing are conservative and neither depends
+//! on the unit of length. No trigonometric function is called.
+
+use super::node::Node;
+use crate::scene::receiver::Receiver;
+use glam::Vec3;
+
+/// How clusters are weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weighing {
+    /// Horizons of the receiver and of the emitters tested against the cluster's box; cosines are means over what of the
+    /// box lies above them.
+    #[default]
+    Box,
+    /// As Conty Estevez and Kulla 2018 and pbrt-v4: the greatest emission over a cone around the bounding sphere, the
+    /// absolute cosine at the receiver. For comparison.
+    Classic,
+}
+
+/// At which distance a cluster is weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Distance {
+    /// At the geometric mean of the least and the greatest distance of its box.
+    #[default]
+    Mean,
+    /// Half the picks at the least distance of its box, half at the greatest (Lin and Yuksel, I3D 2020).
+    MinMax,
+}
+
+/// How a tree weighs and walks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct How {
+    /// How clusters are weighed.
+    pub weighing: Weighing,
+    /// At which distance.
+    pub distance: Distance,
+    /// A cluster whose squared half diagonal is less than this share of its squared distance, all above the receiver's
+    /// horizon and all alike in direction, is not walked into: a light is chosen by peak intensity at once. 0 for never.
+    pub far: f32,
+}
+
+/// What bounds rounding, as a share of the lengths involved: some thirty times half a unit in the last place. What shading
+/// finds above a horizon by rounding alone must not be rejected here.
+const MARGIN: f32 = 2e-6;
+
+/// Least squared distance at which a cluster around the receiver is weighed, as a share of its squared half diagonal.
+const NEAREST: f32 = 0.05;
+
+/// The estimates of a node's slots, 0 where no light of a slot can add anything.
+pub(super) struct Weights<const N: usize> {
+    /// At the distance of the centre, or at the greatest of the box.
+    pub(super) far: [f32; N],
+    /// At the least distance of the box; the same as `far` unless [`Distance::MinMax`] asks for it.
+    pub(super) near: [f32; N],
+}
+
+/// Weighs the slots of a node.
+#[inline]
+pub(super) fn weigh<const N: usize>(node: &Node<N>, at: &Receiver, how: How) -> Weights<N> {
+    match (how.weighing, how.distance) {
+        (Weighing::Box, Distance::Mean) => by_box::<N, false>(node, at),
+        (Weighing::Box, Distance::MinMax) => by_box::<N, true>(node, at),
+        (Weighing::Classic, Distance::Mean) => classic::<N, false>(node, at),
+        (Weighing::Classic, Distance::MinMax) => classic::<N, true>(node, at),
+    }
+}
+
+/// `a` or `b` by a comparison: compiles to a minimum or maximum without the care for NaN that [`f32::max`] takes.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Of an interval from `bottom` to `top` > 0: the share above 0 and the mean over that.
+#[inline(always)]
+fn above(bottom: f32, top: f32) -> (f32, f32) {
+    let from = larger(bottom, 0.0);
+    ((top - from) / (top - bottom), 0.5 * (top + from))
+}
+
+#[inline(always)]
+fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> Weights<N> {
+    let [px, py, pz] = at.position.to_array();
+    let [nx, ny, nz] = at.normal.to_array();
+    let [mx, my, mz] = at.normal.abs().to_array();
+    let mut weights = Weights { far: [0.0; N], near: [0.0; N] };
+    for j in 0..N {
+        let (vx, vy, vz) = (node.centre[0][j] - px, node.centre[1][j] - py, node.centre[2][j] - pz);
+        let (hx, hy, hz) = (node.half[0][j], node.half[1][j], node.half[2][j]);
+        let (wx, wy, wz) = (node.axis[0][j], node.axis[1][j], node.axis[2][j]);
+        let (ax, ay, az) = (node.axis_half[0][j], node.axis_half[1][j], node.axis_half[2][j]);
+        let d2 = vx * vx + vy * vy + vz * vz;
+        let r2 = hx * hx + hy * hy + hz * hz;
+        let (d, r) = (d2.sqrt(), r2.sqrt());
+        let margin = MARGIN * (d + r);
+
+        // Heights of the box over the receiver's horizon.
+        let height = nx * vx + ny * vy + nz * vz;
+        let half_height = mx * hx + my * hy + mz * hz + margin;
+        let top = height + half_height;
+        let (share, mean) = above(height - half_height, top);
+
+        // The same over the emitters' horizon: distance times (cosine less cut), over places and directions.
+        let cut = node.cut[j];
+        let facing = -(wx * vx + wy * vy + wz * vz) - cut * d;
+        let half_facing = wx.abs() * hx
+            + wy.abs() * hy
+            + wz.abs() * hz
+            + ax * (vx.abs() + hx)
+            + ay * (vy.abs() + hy)
+            + az * (vz.abs() + hz)
+            + cut.abs() * r
+            + margin;
+        let lit = facing + half_facing;
+        let (lit_share, lit_mean) = above(facing - half_facing, lit);
+
+        let near2 = box_distance2([vx, vy, vz], [hx, hy, hz], -1.0);
+        let far2 = box_distance2([vx, vy, vz], [hx, hy, hz], 1.0);
+        // What is near decides: where the box begins at the receiver, cosines are those of lights right in front of it.
+        let typical = (near2 * far2).sqrt().sqrt();
+        let cosine = share * smaller(1.0, mean / typical);
+        let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean / typical);
+        let arriving = node.peak[j] * emission * cosine;
+        // Not 0 by underflow, nor beyond f32: only what is rejected weighs nothing.
+        let keep = |value: f32| {
+            let value = larger(smaller(value, f32::MAX), f32::MIN_POSITIVE);
+            if (top > 0.0) & (lit > 0.0) { value } else { 0.0 }
+        };
+        let floored2 = larger(near2, NEAREST * r2);
+        if MINMAX {
+            weights.near[j] = keep(arriving / floored2);
+            weights.far[j] = keep(arriving / far2);
+        } else {
+            // The mean of 1/d^2 for distances evenly between the least and the greatest.
+            weights.far[j] = keep(arriving / (floored2 * far2).sqrt());
+            weights.near[j] = weights.far[j];
+        }
+    }
+    weights
+}
+
+/// Squared distance to the nearest (`side` -1) or farthest (1) point of a box.
+#[inline(always)]
+fn box_distance2(v: [f32; 3], half: [f32; 3], side: f32) -> f32 {
+    let along = |k: usize| larger(v[k].abs() + side * half[k], 0.0);
+    let (x, y, z) = (along(0), along(1), along(2));
+    x * x + y * y + z * z
+}
+
+/// Cosine of an angle less another, 1 if that is negative; both within 0 and pi, given by their cosines.
+///
+/// Never less than exact: where a cosine is near -1 or 1, half its digits are missing from its sine, and these are added.
+#[inline(always)]
+fn cos_minus(cos_a: f32, cos_b: f32) -> f32 {
+    let sin = |cos: f32| (larger(1.0 - cos * cos, 0.0) + MARGIN).sqrt();
+    if cos_a > cos_b { 1.0 } else { smaller(cos_a * cos_b + sin(cos_a) * sin(cos_b), 1.0) }
+}
+
+#[inline(always)]
+fn classic<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> Weights<N> {
+    let [px, py, pz] = at.position.to_array();
+    let [nx, ny, nz] = at.normal.to_array();
+    let mut weights = Weights { far: [0.0; N], near: [0.0; N] };
+    for j in 0..N {
+        let (vx, vy, vz) = (node.centre[0][j] - px, node.centre[1][j] - py, node.centre[2][j] - pz);
+        let (hx, hy, hz) = (node.half[0][j], node.half[1][j], node.half[2][j]);
+        let (wx, wy, wz) = (node.axis[0][j], node.axis[1][j], node.axis[2][j]);
+        let (ax, ay, az) = (node.axis_half[0][j], node.axis_half[1][j], node.axis_half[2][j]);
+        let d2 = vx * vx + vy * vy + vz * vz;
+        let r2 = hx * hx + hy * hy + hz * hz;
+        let d = larger(d2, f32::MIN_POSITIVE).sqrt();
+        // Half-angle of the bounding sphere, wide enough for rounding; within the sphere, any direction.
+        let outside = 1.0 - r2 / larger(d2, f32::MIN_POSITIVE);
+        let bound = if outside > 0.0 { outside.sqrt() - MARGIN } else { -1.0 };
+        // The cone of directions: see `Bounds::cosine`.
+        let w2 = wx * wx + wy * wy + wz * wz;
+        let (w, a2) = (larger(w2, 1e-6).sqrt(), ax * ax + ay * ay + az * az);
+        let cone =
+            if (w2 > 1e-6) & (node.cut[j] >= 0.0) { larger(0.5 * (1.0 + w2 - a2) / w - MARGIN, -1.0) } else { -1.0 };
+        let towards = larger(smaller(-(wx * vx + wy * vy + wz * vz) / (w * d), 1.0), -1.0);
+        let emission = cos_minus(cos_minus(towards, cone), bound) + MARGIN;
+        let cosine = smaller((nx * vx + ny * vy + nz * vz).abs() / d, 1.0);
+        let arriving = node.peak[j] * larger(emission, 0.0) * cos_minus(cosine, bound);
+        let keep = |value: f32| {
+            let value = larger(smaller(value, f32::MAX), f32::MIN_POSITIVE);
+            if emission > node.cut[j] { value } else { 0.0 }
+        };
+        if MINMAX {
+            let (near2, far2) =
+                (box_distance2([vx, vy, vz], [hx, hy, hz], -1.0), box_distance2([vx, vy, vz], [hx, hy, hz], 1.0));
+            weights.near[j] = keep(arriving / larger(near2, NEAREST * r2));
+            weights.far[j] = keep(arriving / far2);
+        } else {
+            // The source's least distance, half the diagonal, in its unit.
+            weights.far[j] = keep(arriving / larger(d2, r2));
+            weights.near[j] = weights.far[j];
+        }
+    }
+    weights
+}
+
+/// Luminance of the irradiance from a directional light, in lx.
+#[inline]
+pub(super) fn directional(towards: Vec3, strength: f32, at: &Receiver) -> f32 {
+    strength * at.normal.dot(towards).max(0.0)
+}

@@ -1,0 +1,168 @@
+//! How are the slots of a node laid out?
+//!
+//! Structure of arrays, so that all slots are weighed together, four a vector register on any x86-64.
+
+use super::bounds::{Bounds, Item, centred};
+use crate::scene::light::LightId;
+use crate::scene::receiver::Receiver;
+use glam::Vec3;
+
+/// Marks a link to a light; the other bits are its number.
+const LIGHT: u32 = 1 << 31;
+
+/// What is in a slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    /// A cluster: its node, counted from this one.
+    Node(u32),
+    /// A light.
+    Light(LightId),
+    /// Nothing.
+    Empty,
+}
+
+/// Up to `N` clusters or lights and what bounds each; lengths in metres.
+#[derive(Clone, Debug)]
+pub(super) struct Node<const N: usize> {
+    /// Centres of the boxes.
+    pub(super) centre: [[f32; N]; 3],
+    /// Half the extents of the boxes.
+    pub(super) half: [[f32; N]; 3],
+    /// Centres of the boxes of directions.
+    pub(super) axis: [[f32; N]; 3],
+    /// Half the extents of the boxes of directions.
+    pub(super) axis_half: [[f32; N]; 3],
+    /// No light of the slot shines where the cosine at it is this or less.
+    pub(super) cut: [f32; N],
+    /// By how much emission grows with the cosine above `cut`, until it is full.
+    pub(super) gain: [f32; N],
+    /// Sum of the luminances of the peak intensities, in cd; 0 of an empty slot.
+    pub(super) peak: [f32; N],
+    link: [u32; N],
+    /// Where the node's lights start in the tree's order, and how many they are.
+    first: u32,
+    count: u32,
+    /// Variance of the lights' peaks over their squared mean.
+    pub(super) unevenness: f32,
+}
+
+impl<const N: usize> Node<N> {
+    /// A node over `items`, which stand at `first` in the tree's order; all slots empty.
+    pub(super) fn new(first: u32, items: &[Item]) -> Self {
+        let zero = [[0.0; N]; 3];
+        Self {
+            centre: zero,
+            half: zero,
+            axis: zero,
+            axis_half: zero,
+            // Beyond any cosine: an empty slot is rejected as one that shines nowhere.
+            cut: [2.0; N],
+            gain: [0.0; N],
+            peak: [0.0; N],
+            link: [0; N],
+            first,
+            count: items.len() as u32,
+            unevenness: unevenness(items),
+        }
+    }
+
+    /// Puts `items` into slot `j`, with a link to the light if it is one; [`descend`](Self::descend) sets it otherwise.
+    pub(super) fn bound(&mut self, j: usize, bounds: &Bounds, items: &[Item]) {
+        let (centre, half) = centred(bounds.low, bounds.high);
+        let (axis, axis_half) = centred(bounds.axis_low, bounds.axis_high);
+        for (lanes, vector) in [
+            (&mut self.centre, centre),
+            (&mut self.half, half),
+            (&mut self.axis, axis),
+            (&mut self.axis_half, axis_half),
+        ] {
+            (0..3).for_each(|k| lanes[k][j] = vector[k]);
+        }
+        let full: f64 = items.iter().map(|item| f64::from(item.full) * f64::from(item.peak)).sum();
+        self.cut[j] = bounds.cut;
+        self.gain[j] = 1.0 / (((full / bounds.peak) as f32) - bounds.cut).max(f32::EPSILON);
+        self.peak[j] = (bounds.peak as f32).min(f32::MAX);
+        if let [item] = items {
+            self.link[j] = LIGHT | item.light;
+        }
+    }
+
+    /// Links slot `j` to the node `offset` places on.
+    pub(super) fn descend(&mut self, j: usize, offset: usize) {
+        self.link[j] = offset as u32;
+    }
+
+    /// What is in slot `j`.
+    #[inline]
+    pub(super) fn slot(&self, j: usize) -> Slot {
+        match self.link[j] {
+            0 => Slot::Empty,
+            link if link & LIGHT != 0 => Slot::Light(link & !LIGHT),
+            offset => Slot::Node(offset),
+        }
+    }
+
+    /// The slots, a bit each, whose squared half diagonal is less than `share` of their squared distance, which are all above
+    /// the receiver's horizon, and whose lights shine there alike: the same way, or all ways.
+    pub(super) fn far(&self, at: &Receiver, share: f32) -> u8 {
+        (0..N).map(|j| u8::from(self.is_far(j, at, share)) << j).sum()
+    }
+
+    fn is_far(&self, j: usize, at: &Receiver, share: f32) -> bool {
+        let [centre, half, axis, axis_half] =
+            [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
+        let to_centre = centre - at.position;
+        let (d2, r2) = (to_centre.length_squared(), half.length_squared());
+        let lowest = at.normal.dot(to_centre) - at.normal.abs().dot(half);
+        let nearest = d2.sqrt() - r2.sqrt();
+        let dimmest = -axis.dot(to_centre) - axis.abs().dot(half) - self.cut[j] * (d2.sqrt() + r2.sqrt());
+        let alike = axis_half == Vec3::ZERO && (axis == Vec3::ZERO || dimmest > 0.0);
+        r2 < share * d2 && nearest > 0.0 && lowest > 0.0 && alike
+    }
+
+    /// Least and greatest distance of a slot's box, in metres.
+    pub(super) fn distances(&self, j: usize, at: &Receiver) -> [f32; 2] {
+        let to_centre = (Self::vector(&self.centre, j) - at.position).abs();
+        let half = Self::vector(&self.half, j);
+        [(to_centre - half).max(Vec3::ZERO).length(), (to_centre + half).length()]
+    }
+
+    /// The most irradiance that the lights of a slot can send, in lx: all of them at the nearest point of the box, with the
+    /// greatest cosines that any point of it has.
+    pub(super) fn upper_bound(&self, j: usize, at: &Receiver) -> f32 {
+        let [centre, half, axis, axis_half] =
+            [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
+        let to_centre = centre - at.position;
+        let [near, _] = self.distances(j, at);
+        let top = at.normal.dot(to_centre) + at.normal.abs().dot(half);
+        // Triangles alone: their emission is the cosine. Others may be full at any.
+        let emission = if self.cut[j] == 0.0 && self.gain[j] <= 1.0 {
+            let lit = axis_half.dot(to_centre.abs() + half) + axis.abs().dot(half) - axis.dot(to_centre);
+            (lit / near).min(1.0)
+        } else {
+            1.0
+        };
+        let bound = self.peak[j] * (top / near).min(1.0) * emission / (near * near);
+        if bound.is_finite() { bound.max(0.0) } else { f32::MAX }
+    }
+
+    /// The lights below, as places in the tree's order.
+    #[inline]
+    pub(super) fn lights(&self) -> std::ops::Range<usize> {
+        let first = self.first as usize;
+        first..first + self.count as usize
+    }
+
+    /// A vector of one slot.
+    #[inline]
+    pub(super) fn vector(lanes: &[[f32; N]; 3], j: usize) -> Vec3 {
+        Vec3::new(lanes[0][j], lanes[1][j], lanes[2][j])
+    }
+}
+
+fn unevenness(items: &[Item]) -> f32 {
+    let peak = |item: &Item| f64::from(item.peak);
+    let mean = items.iter().map(peak).sum::<f64>() / items.len() as f64;
+    let squares: f64 = items.iter().map(|item| (peak(item) / mean - 1.0).powi(2)).sum();
+    (squares / items.len() as f64) as f32
+}
