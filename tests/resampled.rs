@@ -7,7 +7,7 @@ mod common;
 mod runs;
 
 use citylights::strategy::Claim;
-use citylights::strategy::registry::{parse, parse_list};
+use citylights::strategy::registry::{Configured, parse, parse_list};
 use common::{image, sixteen, stage};
 use runs::Runs;
 
@@ -66,7 +66,7 @@ fn names_hold_the_inner_strategy_and_its_parameters() {
     let name = "resampled:from=influence-tail:picks=2;cutoff=255,m=3";
     assert_eq!(parse(name).expect("parsed").name(), name);
     let list = parse_list("power,resampled:from=power:picks=2,m=4,uniform").expect("a list");
-    let names: Vec<&str> = list.iter().map(citylights::strategy::registry::Configured::name).collect();
+    let names: Vec<&str> = list.iter().map(Configured::name).collect();
     assert_eq!(names, ["power", "resampled:from=power:picks=2,m=4", "uniform"]);
     assert_eq!(parse("resampled:from=power,m=16").expect("the defaults").name(), "resampled");
 }

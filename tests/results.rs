@@ -59,6 +59,7 @@ fn record() -> RunRecord {
             reference: ReferenceRecord {
                 kind: "exact sum".to_owned(),
                 rel_mse: 0.0,
+                energy_error: 0.0,
                 rays: 50_000_000,
                 cpu_s: 12.5,
                 cached: false,
@@ -82,7 +83,15 @@ fn record() -> RunRecord {
                 mean_bias: value(-0.01),
                 detectable_bias: 0.002,
                 variance_seconds: 0.5,
-                counts: Counts { samples: 3_200_000, picks: 3_200_000, shadow_rays: 2_000_000, ..Counts::default() },
+                times_oracle: Some(2.5),
+                receivers: Some(256),
+                counts: Counts {
+                    samples: 3_200_000,
+                    picks: 3_200_000,
+                    shadow_rays: 2_000_000,
+                    weighed: 9,
+                    ..Counts::default()
+                },
                 unstable: false,
                 skipped: None,
                 error: None,

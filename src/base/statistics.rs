@@ -56,6 +56,13 @@ pub fn student_quantile(p: f64, freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(p))
 }
 
+/// The value below which a standard normal number lies with probability `p`.
+#[cfg(feature = "measure")]
+pub fn normal_quantile(p: f64) -> f64 {
+    use statrs::distribution::{ContinuousCDF, Normal};
+    Normal::standard().inverse_cdf(p)
+}
+
 /// Two-sided probability of a t statistic at least this far from 0.
 #[cfg(feature = "measure")]
 pub fn student_p(t: f64, freedom: usize) -> f64 {
@@ -92,5 +99,6 @@ mod tests {
     fn student_matches_the_printed_table() {
         assert!((student_quantile(0.975, 15) - 2.131_450).abs() < 1e-5);
         assert!((student_p(2.131_450, 15) - 0.05).abs() < 1e-6);
+        assert!((normal_quantile(0.975) - 1.959_964).abs() < 1e-5);
     }
 }

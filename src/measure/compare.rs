@@ -3,6 +3,7 @@
 use super::clock::{Spent, timed};
 use super::films::Films;
 use super::observer::Observer;
+use super::oracle;
 use super::plan::{self, Budget, Pilot};
 use super::reference::{Reference, scene_hash};
 use super::summary::{blank, summarise};
@@ -56,10 +57,10 @@ pub fn compare(
         .strategies
         .iter()
         .zip(&pilots)
-        .map(|(strategy, pilot)| ladder(strategy, pilot.as_ref().ok(), stage, options, before))
+        .map(|(strategy, pilot)| ladder(strategy, pilot.as_ref().and_then(|p| p.as_ref().ok()), stage, options, before))
         .collect();
     let best = options.strategies.iter().zip(&pilots).zip(&ladders).filter_map(|((strategy, pilot), ladder)| {
-        let pilot = pilot.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
+        let pilot = pilot.as_ref()?.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
         Some(pilot.expected_rel_mse(*ladder.last()?))
     });
     // A hundredth of the best row's error, with some room for the pilot's own noise; never below what f32 can hold.
@@ -75,7 +76,16 @@ pub fn compare(
     };
     comparison.run(before, rows, watch)?;
 
-    let summaries: Vec<Summary> = (0..options.strategies.len()).map(|i| comparison.summary(i, &pilots[i])).collect();
+    let mut summaries: Vec<Summary> = options
+        .strategies
+        .iter()
+        .zip(&pilots)
+        .enumerate()
+        .map(|(i, (strategy, pilot))| pilot.as_ref().map_or_else(|| blank(strategy), |p| comparison.summary(i, p)))
+        .collect();
+    let image = |index, run| comparison.films.get(&(index, run)).map(Vec::as_slice);
+    let images = |index| (0..options.repeats).filter_map(|run| image(index, run)).collect();
+    oracle::settle(&target, &reference.truth, options, images, &mut summaries, watch)?;
     let mut notes = stage.scene().notes().to_vec();
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
@@ -113,6 +123,7 @@ fn record(
         reference: ReferenceRecord {
             kind: if reference.exact_sum { "exact sum" } else { "stratified" }.into(),
             rel_mse: reference.truth.own_rel_mse(),
+            energy_error: reference.truth.own_energy_error(),
             rays: reference.rays,
             cpu_s: reference.cpu_s,
             cached: reference.cached,
@@ -123,14 +134,15 @@ fn record(
     }
 }
 
-fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Result<Pilot>>> {
+/// One for each strategy; none for those that are not run against the clock.
+fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Result<Pilot>>>> {
     let few = target.thinned(plan::RECEIVERS);
     let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
     watch.begin("pilots", options.strategies.len() as u64);
     let mut pilots = Vec::new();
     for strategy in options.strategies {
         watch.check()?;
-        pilots.push(Pilot::run(&few, &rough, target.receivers.len(), strategy, options.seed));
+        pilots.push((!oracle::is_oracle(strategy)).then(|| Pilot::run(target, &rough, strategy, options.seed)));
         watch.advance(1);
     }
     watch.end();

@@ -10,6 +10,7 @@ pub mod errors;
 pub mod films;
 pub mod inspect;
 pub mod observer;
+mod oracle;
 pub mod plan;
 pub mod reference;
 pub mod summary;

@@ -5,7 +5,7 @@
 
 use super::clock::timed;
 use super::errors::Truth;
-use super::target::Target;
+use super::target::{self, Target};
 use crate::base::colour::luminance;
 use crate::base::draws::Points;
 use crate::base::error::Result;
@@ -13,8 +13,10 @@ use crate::base::random::RunKey;
 use crate::render::counts::Counts;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
+use crate::scene::receiver::Receiver;
 use crate::strategy::BuildContext;
 use crate::strategy::registry::Configured;
+use glam::Vec3;
 
 /// What one strategy may spend in one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,25 +54,35 @@ pub(super) const RECEIVERS: usize = 512;
 /// A bias of the image's mean that runs should be able to see.
 pub const DETECTABLE: f64 = 0.05;
 
-/// Passes of a pilot.
-const PASSES: u32 = 4;
+/// Passes of a pilot, and passes that work is counted over.
+pub(super) const PASSES: u32 = 4;
 
 impl Pilot {
-    /// Tries a strategy on a few receivers (`few`, with their truth) of a target of `all` receivers.
-    pub fn run(few: &Target<'_>, truth: &Truth, all: usize, strategy: &Configured, seed: u64) -> Result<Self> {
-        let sampler = strategy.build(BuildContext { stage: few.stage, seed })?;
+    /// Tries a strategy on [`RECEIVERS`] of the target's receivers, with their truth.
+    ///
+    /// One that draws state for a pass or looks at its whole frame gets the whole frame: on a few receivers that cost
+    /// would be out of proportion, and neighbours too far apart to be any.
+    pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64) -> Result<Self> {
+        let sampler = strategy.build(BuildContext { stage: target.stage, seed })?;
+        let all = target.receivers.len();
+        let places: Vec<usize> = target::places(all, RECEIVERS).collect();
+        let few: Vec<Receiver> = places.iter().map(|&i| target.receivers[i]).collect();
+        let whole = sampler.most_passes() == 1;
+        let frame: &[Receiver] = if whole { &target.receivers } else { &few };
         let plan = |run| Plan {
-            stage: few.stage,
-            receivers: &few.receivers,
+            stage: target.stage,
+            receivers: frame,
             sampler: sampler.as_ref(),
             key: RunKey { seed: !seed, run },
         };
         let film = |run, passes| {
-            let mut film = Film::new(few.receivers.len());
+            let mut film = Film::new(frame.len());
             let ((), spent) = timed(|| plan(run).run(passes, &mut film));
-            (film.image(), spent.cpu)
+            let image = film.image();
+            let image: Vec<Vec3> = if whole { places.iter().map(|&i| image[i]).collect() } else { image };
+            (image, spent.cpu)
         };
-        let scale = all as f64 / few.receivers.len().max(1) as f64;
+        let scale = all as f64 / frame.len().max(1) as f64;
         film(0, 1); // Warms the caches.
         let one = film(0, 1).1 * scale;
         let (first, several) = film(1, PASSES);
@@ -87,7 +99,7 @@ impl Pilot {
         let of_pixel = f64::from(PASSES) * mean(&|i| f64::from(luminance(first[i] - second[i])).powi(2) / 2.0);
         // Receivers are independent of one another: their mean has an n-th of their variance.
         let energy_variance = if energy > 0.0 { of_pixel / (all as f64 * energy * energy) } else { 0.0 };
-        let counts = plan(3).run_counting(PASSES, &mut Film::new(few.receivers.len()));
+        let counts = plan(3).run_counting(PASSES, &mut Film::new(frame.len()));
         Ok(Self {
             arrive_s: (one - pass_s).max(0.0),
             pass_s,

@@ -4,6 +4,7 @@ use super::errors::Truth;
 use super::plan::Pilot;
 use crate::base::statistics::Moments;
 use crate::record::{Claim, Counts, Interval, Row, Summary};
+use crate::render::counts as render;
 use crate::strategy::registry::Configured;
 use crate::strategy::{Claim as StrategyClaim, Role};
 use glam::{DVec3, Vec3};
@@ -38,6 +39,8 @@ pub fn blank(strategy: &Configured) -> Summary {
         mean_bias: none,
         detectable_bias: f64::NAN,
         variance_seconds: f64::NAN,
+        times_oracle: None,
+        receivers: None,
         counts: Counts::default(),
         unstable: false,
         skipped: None,
@@ -72,20 +75,28 @@ pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&R
     summary.rel_bias2 = spread.rel_bias2();
     summary.variance_seconds = spread.rel_variance() * summary.cpu_s;
     summary.unstable = unstable(rows);
-    let c = pilot.counts;
-    summary.counts = Counts {
-        samples: c.samples,
-        picks: c.picks,
-        shadow_rays: c.shadow_rays,
-        blocked: c.blocked,
-        zero_intensity: c.zero_intensity,
-        behind_surface: c.behind_surface,
-        behind_light: c.behind_light,
-    };
+    summary.counts = counts(pilot.counts);
     summary
 }
 
-fn interval(moments: Moments) -> Interval {
+/// Counts as they are recorded.
+pub(super) fn counts(found: render::Counts) -> Counts {
+    Counts {
+        samples: found.samples,
+        picks: found.picks,
+        shadow_rays: found.shadow_rays,
+        blocked: found.blocked,
+        zero_intensity: found.zero_intensity,
+        behind_surface: found.behind_surface,
+        behind_light: found.behind_light,
+        nodes: found.work.nodes,
+        weighed: found.work.weighed,
+        candidates: found.work.candidates,
+        choosing_rays: found.work.shadow_rays,
+    }
+}
+
+pub(super) fn interval(moments: Moments) -> Interval {
     Interval { mean: moments.mean, half_width: moments.half_width(CONFIDENCE) }
 }
 

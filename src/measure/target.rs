@@ -43,6 +43,11 @@ impl<'a> Target<'a> {
 
 /// `count` receivers at equal steps through the list, whose order follows squares of the image: one from each stratum.
 pub fn spread(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
-    let count = count.min(receivers.len());
-    (0..count).map(|i| receivers[(2 * i + 1) * receivers.len() / (2 * count)]).collect()
+    places(receivers.len(), count).map(|i| receivers[i]).collect()
+}
+
+/// Where [`spread`] finds its receivers in a list of `all`.
+pub fn places(all: usize, count: usize) -> impl Iterator<Item = usize> {
+    let count = count.min(all);
+    (0..count).map(move |i| (2 * i + 1) * all / (2 * count))
 }

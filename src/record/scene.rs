@@ -12,6 +12,9 @@ pub struct ReferenceRecord {
     /// Its own relMSE; 0 for an exact sum.
     #[serde(with = "number")]
     pub rel_mse: f64,
+    /// Standard error of its mean luminance as a share of it; 0 for an exact sum.
+    #[serde(with = "number", default)]
+    pub energy_error: f64,
     /// Shadow rays it took.
     pub rays: u64,
     /// CPU seconds it took.

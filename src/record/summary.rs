@@ -54,6 +54,18 @@ pub struct Counts {
     pub behind_surface: u64,
     /// Picks dropped because the receiver is behind a one-sided emitter.
     pub behind_light: u64,
+    /// Nodes of a hierarchy visited to choose.
+    #[serde(default)]
+    pub nodes: u64,
+    /// Lights or nodes weighed at a receiver to choose.
+    #[serde(default)]
+    pub weighed: u64,
+    /// Candidates drawn to choose from.
+    #[serde(default)]
+    pub candidates: u64,
+    /// Shadow rays cast to choose, beside [`shadow_rays`](Self::shadow_rays).
+    #[serde(default)]
+    pub choosing_rays: u64,
 }
 
 /// One strategy on one scene at its largest budget.
@@ -103,6 +115,13 @@ pub struct Summary {
     /// passes and V is not the same at every budget.
     #[serde(with = "number")]
     pub variance_seconds: f64,
+    /// Error per sample, relMSE times passes, over that of the oracle at the receivers that this was run on; none where
+    /// no oracle was run.
+    #[serde(default)]
+    pub times_oracle: Option<f64>,
+    /// The receivers that its figures are for, where they are not all that were measured: an oracle's.
+    #[serde(default)]
+    pub receivers: Option<u64>,
     /// Work, from the counting pass.
     pub counts: Counts,
     /// Whether the two halves of the runs differ by more than their intervals.

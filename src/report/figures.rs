@@ -1,7 +1,8 @@
 //! What follows from the recorded figures of a strategy: how soon it gets somewhere, and where it stands among the others.
 
 use super::curve::{Curve, Point};
-use crate::record::{Claim, Interval, Summary};
+use crate::base::statistics::{normal_quantile, sidak, student_quantile};
+use crate::record::{Claim, Interval, RunRecord, SceneRecord, Summary};
 use std::cmp::Ordering;
 
 /// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative; NaN where
@@ -83,6 +84,33 @@ pub fn balance(summary: &Summary) -> Option<Balance> {
     // A b^2 that may be 0 would give a t* that may be anything.
     let seen = mean - half_width > 0.0;
     Some(if seen { Balance::At(summary.variance_seconds / mean) } else { Balance::After(summary.cpu_s) })
+}
+
+/// The chance that any one of all right strategies of a run is found biased.
+const LEVEL: f64 = 0.01;
+
+/// The unbiased rows of a scene whose bias of the image mean has an interval.
+pub(super) fn held_to_zero(scene: &SceneRecord) -> impl Iterator<Item = &Summary> {
+    let held = |s: &&Summary| s.claim == Claim::Unbiased && measured(s) && s.mean_bias.half_width.is_finite();
+    scene.summaries.iter().filter(held)
+}
+
+/// The bias of the image mean with an interval that holds for all unbiased rows of the run, on all scenes, together
+/// ([`LEVEL`], Sidak 1967): Student's t for the runs, the normal law for the reference's own error.
+pub(super) fn simultaneous_bias(run: &RunRecord, scene: &SceneRecord, summary: &Summary) -> Interval {
+    let rows = run.scenes.iter().map(|scene| held_to_zero(scene).count()).sum();
+    let p = 1.0 - 0.5 * sidak(LEVEL, rows);
+    let (freedom, own) = (summary.runs.max(2) as usize - 1, scene.reference.energy_error);
+    let Interval { mean, half_width } = summary.mean_bias;
+    // The recorded interval: 95 % for the runs, two standard errors for the reference.
+    let of_runs = (half_width.powi(2) - (2.0 * own).powi(2)).max(0.0).sqrt() / student_quantile(0.975, freedom);
+    let half_width = (student_quantile(p, freedom) * of_runs).hypot(normal_quantile(p) * own);
+    Interval { mean, half_width }
+}
+
+/// Whether an interval holds 0; one that is no number holds nothing.
+pub(super) fn holds_zero(interval: Interval) -> bool {
+    interval.mean.abs() <= interval.half_width
 }
 
 /// Whether the strategy ran to its end, so that its numbers mean something.

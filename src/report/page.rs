@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// `plot` is the address of its plot as seen from the page; `rows` may hold other scenes too.
 pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("#", run, scene, plot);
-    for sheet in sheets(scene, rows) {
+    for sheet in sheets(run, scene, rows) {
         _ = write!(text, "\n{}", sheet.markdown(2));
     }
     let machine = &run.machine;
@@ -27,7 +27,7 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
 /// `plot` is the address of its plot as seen from the page.
 pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("##", run, scene, plot);
-    if let Some(answer) = sheets(scene, rows).first() {
+    if let Some(answer) = sheets(run, scene, rows).first() {
         _ = write!(text, "\n{}", answer.markdown(3));
     }
     _ = writeln!(text, "\nMade by `{}` ({}, revision {}, {}).", run.command, run.date, run.revision, run.machine.cpu);

@@ -36,7 +36,7 @@ pub(super) struct Sheet {
 }
 
 /// Longest line of a strategy's name on a terminal; with it the widest table stays within 140 columns.
-const NAME_WIDTH: usize = 24;
+const NAME_WIDTH: usize = 22;
 
 impl Sheet {
     /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its reason.

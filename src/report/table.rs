@@ -1,7 +1,8 @@
 //! Which strategy reaches which error how soon, in one scene: the tables for the terminal.
 //!
-//! Four tables: error against time (the answer), other measures of error, error by brightness, work. A column stands only
-//! where it can differ from row to row: no bias columns without biased strategies, no early outs that the scene cannot cause.
+//! Five tables: error against time (the answer), other measures of error, error by brightness, work, work of choosing.
+//! A column stands only where it can differ from row to row: no bias columns without biased strategies, no early outs that
+//! the scene cannot cause.
 
 use super::curve::{Curve, rows_of};
 use super::figures::{self, Arrival, Balance};
@@ -18,7 +19,7 @@ pub fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> String {
     facts(run, scene).iter().for_each(|fact| _ = writeln!(text, "  {fact}"));
     scene.notes.iter().for_each(|note| _ = writeln!(text, "  note: {note}"));
     warnings(run, scene).iter().for_each(|warning| _ = writeln!(text, "  warning: {warning}"));
-    for sheet in sheets(scene, rows) {
+    for sheet in sheets(run, scene, rows) {
         _ = write!(text, "\n{}", sheet.text());
     }
     text
@@ -93,15 +94,19 @@ fn blindness(scene: &SceneRecord) -> Option<String> {
 }
 
 /// All tables of a scene.
-pub(super) fn sheets(scene: &SceneRecord, rows: &[Row]) -> Vec<Sheet> {
+pub(super) fn sheets(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> Vec<Sheet> {
     let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
     summaries.sort_by(|a, b| figures::order(a, b));
     let rows = rows_of(rows, &scene.name);
     let measured: Vec<&Summary> = summaries.iter().copied().filter(|s| figures::measured(s)).collect();
     let mut sheets = vec![against_time(&summaries, &rows)];
-    if !measured.is_empty() {
-        sheets.extend([other_measures(&measured, &rows), by_brightness(&measured, &rows), work(&measured)]);
+    // The oracle is run on a few receivers and off the clock: no more is known of it than its error and its work.
+    let timed: Vec<&Summary> = measured.iter().copied().filter(|s| s.claim != Claim::Oracle).collect();
+    if !timed.is_empty() {
+        let below = vec![bias_of_all(run, scene)];
+        sheets.extend([other_measures(&timed, &rows, below), by_brightness(&timed, &rows), work(&timed)]);
     }
+    sheets.extend(work_of_choosing(&measured));
     sheets
 }
 
@@ -118,6 +123,9 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
         Column::new("s to\n0.01", move |s| time(s, arrival(s, 0.01))),
         Column::new("relMSE", |s| error(s.rel_mse)),
     ]);
+    if summaries.iter().any(|s| s.times_oracle.is_some()) {
+        columns.push(Column::new("x\noracle", |s| s.times_oracle.map_or_else(|| NONE.to_owned(), short)));
+    }
     if summaries.iter().any(|s| is_biased(s)) {
         let only_biased = move |s: &Summary, text: String| if is_biased(s) { text } else { NONE.to_owned() };
         columns.push(Column::new("b²", move |s| only_biased(s, with_share(s.rel_bias2))));
@@ -153,6 +161,12 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
             "t* > the longest time measured: b² cannot be told from 0. never: b² alone is that large.".to_owned(),
         );
     }
+    if let Some(receivers) = summaries.iter().find_map(|s| s.receivers) {
+        below.push(format!(
+            "x oracle: error per sample over that of the oracle, both at the same {} receivers, which its row is for; it is not timed.",
+            grouped(receivers)
+        ));
+    }
     if summaries.iter().any(|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
@@ -164,7 +178,24 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
     Sheet::new("Error against time", summaries, &columns, below)
 }
 
-fn other_measures(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
+/// Whether the image means of all unbiased rows are right, as far as the runs can tell.
+fn bias_of_all(run: &RunRecord, scene: &SceneRecord) -> String {
+    let rows: usize = run.scenes.iter().map(|scene| figures::held_to_zero(scene).count()).sum();
+    let here = figures::held_to_zero(scene).count();
+    let off: Vec<String> = figures::held_to_zero(scene)
+        .map(|s| (s, figures::simultaneous_bias(run, scene, s)))
+        .filter(|(_, bias)| !figures::holds_zero(*bias))
+        .map(|(s, bias)| format!("`{}` {}", s.strategy, signed_percent(bias)))
+        .collect();
+    let verdict = match (here, off.is_empty()) {
+        (0, _) => "none of them is here".to_owned(),
+        (_, true) => format!("all {here} here contain 0"),
+        (_, false) => format!("of {here} here these do not contain 0: {}", off.join(", ")),
+    };
+    format!("simultaneous 99 % intervals of that bias, over the {rows} unbiased rows of the run (Sidak): {verdict}.")
+}
+
+fn other_measures(summaries: &[&Summary], rows: &[&Row], more: Vec<String>) -> Sheet {
     let columns = [
         Column::new("relMSE without\nworst 0.1 %", |s| error(s.rel_mse_trimmed)),
         Column::new("share of\nthose, %", |s| percent(mean_at_end(rows, s, |r| r.trimmed_share), 1.0)),
@@ -172,7 +203,8 @@ fn other_measures(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
         Column::new("bias of the\nimage mean, %", |s| signed_percent(s.mean_bias)),
         Column::new("detectable\nbias, %", |s| short(100.0 * s.detectable_bias)),
     ];
-    let below = vec!["detectable: a bias of the image mean that a 5 % test would find 8 times in 10.".to_owned()];
+    let mut below = vec!["detectable: a bias of the image mean that a 5 % test would find 8 times in 10.".to_owned()];
+    below.extend(more);
     Sheet::new("Other measures of error", summaries, &columns, below)
 }
 
@@ -189,11 +221,7 @@ fn by_brightness(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
 }
 
 fn work(summaries: &[&Summary]) -> Sheet {
-    let occurs = |count: fn(&Summary) -> u64| summaries.iter().any(|s| count(s) > 0);
-    let per_sample = |part: u64, s: &Summary| match s.counts.samples {
-        0 => NONE.to_owned(),
-        samples => short(part as f64 / samples as f64),
-    };
+    let occurs = |count: Count| summaries.iter().any(|s| count(s) > 0);
     let of_picks = |part: u64, s: &Summary| percent(part as f64, s.counts.picks as f64);
     let mut columns = vec![
         Column::new("picks\nper sample", move |s| per_sample(s.counts.picks, s)),
@@ -215,6 +243,33 @@ fn work(summaries: &[&Summary]) -> Sheet {
     columns.push(Column::new("memory", |s| bytes(s.heap_bytes)));
     columns.push(Column::new("wall s", |s| short(s.wall_s)));
     Sheet::new("Work", summaries, &columns, Vec::new())
+}
+
+type Count = fn(&Summary) -> u64;
+
+fn per_sample(part: u64, summary: &Summary) -> String {
+    match summary.counts.samples {
+        0 => NONE.to_owned(),
+        samples => short(part as f64 / samples as f64),
+    }
+}
+
+/// What choosing took, where it was more than drawing a number.
+fn work_of_choosing(summaries: &[&Summary]) -> Option<Sheet> {
+    let kinds: [(&str, Count); 4] = [
+        ("nodes\nper sample", |s| s.counts.nodes),
+        ("lights weighed\nper sample", |s| s.counts.weighed),
+        ("candidates\nper sample", |s| s.counts.candidates),
+        ("choosing rays\nper sample", |s| s.counts.choosing_rays),
+    ];
+    let occurs = |count: Count| summaries.iter().any(|s| count(s) > 0);
+    let columns: Vec<Column> = kinds
+        .into_iter()
+        .filter(|(_, count)| occurs(*count))
+        .map(|(head, count)| Column::new(head, move |s| per_sample(count(s), s)))
+        .collect();
+    let note = "counted over 4 passes: what is done once a receiver is shared out over them.";
+    (!columns.is_empty()).then(|| Sheet::new("Work of choosing", summaries, &columns, vec![note.to_owned()]))
 }
 
 fn claim(summary: &Summary) -> &'static str {
