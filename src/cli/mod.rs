@@ -11,6 +11,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod verify;
 
 use crate::base::error::Error;
 use clap::{Parser, Subcommand};
@@ -28,6 +29,8 @@ struct Cli {
 enum Verb {
     /// Error against run time, all strategies in one table: the main job
     Compare(compare::Arguments),
+    /// Every strategy against its contract: exit code 1 if a check fails
+    Verify(verify::Arguments),
     /// Render a scene with one strategy
     Render(render::Arguments),
     /// The exact image and its standard error, cached
@@ -52,6 +55,7 @@ pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match &cli.verb {
         Verb::Compare(arguments) => compare::run(arguments),
+        Verb::Verify(arguments) => verify::run(arguments),
         Verb::Render(arguments) => render::run(arguments),
         Verb::Reference(arguments) => reference::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),

@@ -51,6 +51,11 @@ impl SceneOptions {
         format!("{:?}, leave out {:?}", self.offset, self.leave_out)
     }
 
+    /// How shadow rays keep off their own surfaces.
+    pub(super) fn offset(&self) -> Offset {
+        self.offset
+    }
+
     /// Loads a scene and makes it ready.
     pub(super) fn stage(&self, file: &Path) -> Result<Stage, Error> {
         Ok(self.prepare(self.load(file)?))

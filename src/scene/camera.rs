@@ -1,7 +1,7 @@
 //! Which direction does each pixel look in?
 
 use crate::base::error::{Error, Result};
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
 /// Most pixels of a film, twice those of 3840 x 2160: a comparison holds several films and about 80 bytes a pixel.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -42,6 +42,19 @@ impl Camera {
         let down = forward.cross(right) * half_height;
         let right = right * half_height * f64::from(width) / f64::from(height);
         Ok(Self { position, forward, right, down, width, height })
+    }
+
+    /// The same view on a film of other pixels across and down; 1 or more of each, and no more in all than this one has.
+    pub fn resized(&self, width: u32, height: u32) -> Self {
+        debug_assert!(width > 0 && height > 0 && width * height <= self.width * self.height);
+        let aspect = |width: u32, height: u32| f64::from(width) / f64::from(height);
+        let right = self.right * (aspect(width, height) / aspect(self.width, self.height));
+        Self { width, height, right, ..*self }
+    }
+
+    /// The camera of a scene that was turned and moved: at `position`, looking along what `turn` makes of its directions.
+    pub fn turned(&self, position: Vec3, turn: DQuat) -> Self {
+        Self { position, forward: turn * self.forward, right: turn * self.right, down: turn * self.down, ..*self }
     }
 
     /// Where the camera stands, in scene coordinates.

@@ -2,27 +2,34 @@
 
 use super::Check;
 use super::observe::Site;
+use crate::scene::light::Light;
+use crate::shading::importance::importance;
 
 /// The check's name.
 pub(super) const COVERAGE: &str = "coverage";
 
-/// Where expected counts cannot be told, a light with this share of the radiance must have been seen, in enough draws to
-/// see it a hundred times were lights picked by what they add.
+/// Where expected counts cannot be told, a light must have been seen that has this share of the radiance, shadows or no
+/// shadows, in enough draws to see it a hundred times were lights picked by what they add. One that stands in the light of
+/// another may be right to wait.
 const NOTICEABLE: f64 = 0.01;
 const OFTEN: f64 = 100.0;
 
 /// Counts the lights that add something at a receiver and have no chance there.
-pub(super) fn coverage(sites: &[Site<'_>]) -> Check {
+pub(super) fn coverage(lights: &[Light], sites: &[Site<'_>]) -> Check {
     let mut missing = 0u64;
     let mut hypotheses = 0u64;
     let mut first = None;
     for site in sites {
         let total = site.truth.total();
+        let noticeable = NOTICEABLE.max(OFTEN / site.draws());
+        // What each light could add with nothing in between, scaled to the same sum.
+        let open: Vec<f64> = lights.iter().map(|light| f64::from(importance(light, &site.at))).collect();
+        let scale = total / open.iter().sum::<f64>();
         for (light, value) in site.truth.lights().iter().enumerate().filter(|(i, _)| site.truth.adds(*i)) {
             hypotheses += 1;
             let covered = match site.expected() {
                 Some(counts) => counts[light] > 0.0,
-                None => site.seen[light] || *value < NOTICEABLE.max(OFTEN / site.draws()) * total,
+                None => site.seen[light] || value.min(open[light] * scale) < noticeable * total,
             };
             if !covered {
                 missing += 1;

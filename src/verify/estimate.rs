@@ -104,6 +104,11 @@ impl<'a> Distance<'a> {
         worst
     }
 
+    /// The surprise of the mean over all.
+    pub(super) fn of_mean(&self) -> f64 {
+        surprise(self.mean.p())
+    }
+
     /// Share of the radiance that is tested, in percent.
     pub(super) fn tested(&self) -> f64 {
         let total: f64 = self.sites.iter().map(|site| site.truth.total()).sum();
@@ -154,6 +159,6 @@ fn mean_of(sites: &[Site<'_>], of: fn(&Batch) -> f64) -> Moments {
     Moments::of(sums.iter().copied())
 }
 
-fn surprise(p: f64) -> f64 {
+pub(super) fn surprise(p: f64) -> f64 {
     -p.max(f64::MIN_POSITIVE).ln()
 }

@@ -4,7 +4,7 @@
 //! statistics with fixed seeds, at one level for all hypotheses of a check together (Sidak 1967): every light that adds
 //! something can be chosen, the weights of each light sum to 1 on average, and the mean estimate is the exact sum. Each
 //! finds what the others pass: a light of little power that is never chosen does not move an estimate, a weight that is
-//! 1 % off disappears in the noise of one light.
+//! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is known.
 //!
 //! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left out
 //! here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
@@ -16,6 +16,7 @@
 mod contract;
 mod coverage;
 mod estimate;
+pub mod metamorphic;
 mod observe;
 mod pool;
 mod truth;
@@ -115,7 +116,11 @@ pub struct Verifier<'a> {
 impl<'a> Verifier<'a> {
     /// Finds the truth at `options.receivers` receivers of a stage.
     pub fn new(stage: &'a Stage, options: Options) -> Self {
-        let receivers = spread(stage.receivers(), options.receivers);
+        Self::at(stage, spread(stage.receivers(), options.receivers), options)
+    }
+
+    /// Finds the truth at receivers of a stage.
+    fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: Options) -> Self {
         let truths = receivers.par_iter().map(|at| Truth::new(stage, at, options.points, options.seed)).collect();
         Self { stage, options, receivers, truths, second: OnceLock::new() }
     }
@@ -152,7 +157,7 @@ impl<'a> Verifier<'a> {
         checks.extend([contract::picks(&sites, &self.options), contract::reciprocal(&sites)]);
         match claim {
             Claim::Unbiased => {
-                checks.push(coverage::coverage(&sites));
+                checks.push(coverage::coverage(self.stage.scene().lights(), &sites));
                 checks.extend(weights::weights(&sites, &self.options));
                 checks.extend(estimate::estimate(&sites, &self.options));
             }
@@ -169,7 +174,7 @@ impl<'a> Verifier<'a> {
                 seed: hash(&[self.options.seed, u64::from_le_bytes(*b"2nd look")]),
                 ..self.options
             };
-            Box::new(Self::new(self.stage, options))
+            Box::new(Self::at(self.stage, self.receivers.clone(), options))
         })
     }
 }

@@ -4,7 +4,8 @@ use super::observe::toss;
 use super::truth::Truth;
 use crate::base::statistics::Moments;
 
-/// Lights expected fewer times than this in all draws share a bin of the weights check.
+/// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there is
+/// nothing to test.
 const BIN: f64 = 30.0;
 
 /// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
@@ -53,6 +54,9 @@ impl Pool {
         let mut bins: Vec<Bin> = Vec::new();
         let mut bin_of = vec![u32::MAX; counts.len()];
         let mut left: f64 = order.iter().map(|&light| count(light)).sum();
+        if left * draws < BIN {
+            order.clear();
+        }
         for light in order {
             let full_enough = bins.last().is_none_or(|bin| bin.expected * draws >= BIN);
             // What would not fill another joins the last.

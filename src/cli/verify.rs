@@ -1,0 +1,183 @@
+//! `citylights verify`: does every strategy keep its promises?
+
+use super::progress::Progress;
+use super::scene::{SceneOptions, pool, threads};
+use super::{Outcome, print, say};
+use crate::base::error::{Error, Result};
+use crate::base::statistics::sidak;
+use crate::measure::observer::Observer;
+use crate::scene::{Scene, small};
+use crate::strategy::Claim;
+use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
+use crate::verify::metamorphic::{self, Copies, Metamorphic};
+use crate::verify::{BY_CHANCE, Check, Options, Verifier};
+use clap::Args;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The recipes; small generated scenes where none is named
+    scenes: Vec<PathBuf>,
+    /// The strategies, with parameters if any: uniform,influence-pick:picks=4; all by default
+    #[arg(long, short, value_name = "A,B")]
+    strategies: Option<String>,
+    /// Names all random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Take the seed from the clock, and say which it is
+    #[arg(long, conflicts_with = "seed")]
+    fresh_seed: bool,
+    /// Picks to draw at each receiver, about; a failing check is made again with four times as many
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(100..=100_000_000))]
+    draws: u32,
+    /// Receivers of each scene
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    receivers: u32,
+    /// The chance that any check fails although all strategies are right
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = level)]
+    level: f64,
+    /// One line a strategy
+    #[arg(long, short)]
+    quiet: bool,
+    /// Threads; all cores by default
+    #[arg(long, value_parser = threads)]
+    threads: Option<u32>,
+    #[command(flatten)]
+    scene_options: SceneOptions,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+    let every = STRATEGIES.iter().map(|entry| entry.info().name).collect::<Vec<_>>().join(",");
+    let strategies = parse_list(arguments.strategies.as_deref().unwrap_or(&every))?;
+    let scenes: Vec<Scene> = if arguments.scenes.is_empty() {
+        small::all().into_iter().map(Scene::new).collect::<Result<_>>()?
+    } else {
+        arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<_>>()?
+    };
+    let chances = BY_CHANCE.len() + metamorphic::CHANCES;
+    let options = Options {
+        receivers: arguments.receivers as usize,
+        draws: arguments.draws as usize,
+        seed: if arguments.fresh_seed { clock()? } else { arguments.seed },
+        // A check fails only if it fails twice.
+        level: sidak(arguments.level, chances * strategies.len() * scenes.len()).sqrt(),
+        ..Options::default()
+    };
+    say(&format!(
+        "seed {}; {} by chance in {} x {chances} checks, each at {:.2e} twice",
+        options.seed,
+        arguments.level,
+        strategies.len() * scenes.len(),
+        options.level
+    ));
+    let progress = Progress::new()?;
+    let failed = pool(arguments.threads)?.install(|| -> anyhow::Result<Vec<String>> {
+        let mut failed = Vec::new();
+        for scene in scenes {
+            progress.scene(scene.name());
+            failed.extend(verify(scene, arguments, &strategies, options, &progress)?);
+        }
+        Ok(failed)
+    })?;
+    if failed.is_empty() {
+        print("every check passed\n")?;
+        return Ok(Outcome::Done);
+    }
+    print(&format!("\n{} failed, seed {}:\n{}", failed.len(), options.seed, failed.concat()))?;
+    Ok(Outcome::CheckFailed)
+}
+
+/// Verifies all strategies on a scene, prints what was found and gives the lines of what failed.
+fn verify(
+    scene: Scene,
+    arguments: &Arguments,
+    strategies: &[Configured],
+    options: Options,
+    watch: &Progress,
+) -> anyhow::Result<Vec<String>> {
+    let name = scene.name().to_owned();
+    watch.begin("strategies", strategies.len() as u64);
+    let copies = Copies::new(&scene, arguments.scene_options.offset())?;
+    let stage = arguments.scene_options.prepare(scene);
+    let verifier = Verifier::new(&stage, options);
+    // The changes are many, and each is looked at alone.
+    let fewer = Options { receivers: options.receivers.min(8), draws: options.draws / 4, batches: 50, ..options };
+    let metamorphic = Metamorphic::new(&copies, fewer);
+    let found: Vec<Found> = strategies
+        .par_iter()
+        .map(|strategy| {
+            watch.check()?;
+            let found = Found::of(strategy, &verifier, &metamorphic);
+            watch.advance(1);
+            Ok(found)
+        })
+        .collect::<Result<_>>()?;
+    watch.end();
+    let lights = stage.scene().lights().len();
+    print(&format!("{name}: {lights} lights, {} receivers\n", stage.receivers().len()))?;
+    let image = Found { strategy: "(the image)".into(), checks: Ok(metamorphic.image()), biased: false };
+    let mut failed = Vec::new();
+    for found in [image].iter().chain(&found) {
+        print(&found.text(arguments.quiet))?;
+        failed.extend(found.failures().map(|check| format!("{name}: {} {check}\n", found.strategy)));
+    }
+    Ok(failed)
+}
+
+/// What was found of a strategy; an error where it cannot serve the scene.
+struct Found {
+    strategy: String,
+    checks: Result<Vec<Check>>,
+    biased: bool,
+}
+
+impl Found {
+    fn of(strategy: &Configured, verifier: &Verifier<'_>, metamorphic: &Metamorphic<'_>) -> Self {
+        let checks = verifier.verify(strategy).and_then(|mut checks| {
+            checks.extend(metamorphic.verify(strategy)?);
+            Ok(checks)
+        });
+        let biased = strategy.info().claim != Claim::Unbiased;
+        Self { strategy: strategy.name().to_owned(), checks, biased }
+    }
+
+    fn failures(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().flatten().filter(|check| !check.passed)
+    }
+
+    fn text(&self, quiet: bool) -> String {
+        let name = &self.strategy;
+        let checks = match &self.checks {
+            Err(error) => return format!("  {name:<24} cannot serve this scene: {error}\n"),
+            Ok(checks) => checks,
+        };
+        if !quiet {
+            return checks.iter().map(|check| format!("  {name:<24} {check}\n")).collect();
+        }
+        // The check that came nearest to its limit, as a share of it; exact ones are at 0.
+        let nearness = |check: &&Check| if check.limit > 0.0 { check.statistic / check.limit } else { 0.0 };
+        let nearest = checks.iter().max_by(|a, b| nearness(a).total_cmp(&nearness(b)));
+        let last = match checks.iter().find(|check| self.biased && check.name == "bias") {
+            Some(bias) => bias.detail.clone(),
+            None => nearest.map_or_else(String::new, |check| {
+                format!("nearest: {} {:.2} of {:.2}", check.name, check.statistic, check.limit)
+            }),
+        };
+        let failures = self.failures().count();
+        let verdict = if failures == 0 { "pass".to_owned() } else { format!("FAIL {failures}") };
+        format!("  {name:<24} {verdict} of {} checks; {last}\n", checks.len())
+    }
+}
+
+fn clock() -> Result<u64> {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    since
+        .map(|time| time.as_nanos() as u64)
+        .map_err(|_| Error::Invalid("the clock stands before 1970; name a --seed".into()))
+}
+
+fn level(text: &str) -> std::result::Result<f64, String> {
+    text.parse().ok().filter(|p: &f64| *p > 0.0 && *p < 1.0).ok_or_else(|| "a chance between 0 and 1 is right".into())
+}

@@ -1,0 +1,321 @@
+//! What must not change when the scene changes in a way that changes nothing?
+//!
+//! Level 2: the scene is scaled, turned, moved and permuted, a light is split, a black one and a hidden one are added. The
+//! image then stays as it was, and so must the mean of every unbiased strategy, which is held to the truth of the changed
+//! scene; a strategy may well choose by other probabilities there, since a hierarchy that was built anew need not be the same.
+//! Only a scene of another size must leave probabilities alone: lengths times s and intensities times s^2 are the same scene in
+//! other units. Biased strategies are held to the contract alone.
+//!
+//! The table of lights is whole on both sides: nothing is left out.
+
+use super::estimate::{Distance, surprise};
+use super::{Check, Options, Subject, Verifier, observe, spread};
+use crate::base::error::Result;
+use crate::base::random::hash;
+use crate::base::statistics::{sidak, student_quantile};
+use crate::scene::light::Shape;
+use crate::scene::receiver::Receiver;
+use crate::scene::small::{cuboid, point};
+use crate::scene::{Parts, Scene};
+use crate::strategy::erased::AnySampler;
+use crate::strategy::registry::Configured;
+use crate::strategy::{BuildContext, Claim};
+use crate::verify::contract::{picks_in_range, picks_valid};
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use glam::{DQuat, DVec3, Vec3};
+use std::collections::HashMap;
+
+/// The checks' names.
+const VALID: &str = "changed-valid";
+const COUNTS: &str = "scaled-counts";
+
+/// How many checks of level 2 a right strategy may fail by chance: one for each of [`CHANGES`].
+pub const CHANCES: usize = CHANGES.len();
+
+/// What is done to a scene, and how far apart the images may be, as a share of the mean.
+///
+/// Receivers and corners are rounded anew, and shadow rays keep off surfaces by a share of the greatest coordinate: a light
+/// on the edge of a shadow may come or go. 10^5 m from the origin coordinates are rounded to 8 mm and rays keep off by 10 cm
+/// where they start, by 40 cm where they end: the image is the same in its mean only.
+const CHANGES: [(&str, Change, f64); 8] = [
+    ("scaled-0.01", Change::Scaled(0.01), 1e-3),
+    ("scaled-100", Change::Scaled(100.0), 1e-3),
+    ("turned", Change::Turned, 1e-2),
+    ("moved", Change::Moved, 0.1),
+    ("permuted", Change::Permuted, 1e-5),
+    ("split", Change::Split, 1e-5),
+    ("black", Change::Black, 1e-5),
+    ("hidden", Change::Hidden, 1e-5),
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Change {
+    /// Lengths by this factor, intensities by its square.
+    Scaled(f64),
+    /// By a radian about an axis that is none of the coordinates'.
+    Turned,
+    /// By 10^5 m.
+    Moved,
+    /// The table of lights in another order.
+    Permuted,
+    /// The light that adds most, as two of half the strength.
+    Split,
+    /// Lights of no strength, before all others.
+    Black,
+    /// A strong light in a closed box below everything.
+    Hidden,
+}
+
+/// Most pixels of a film here: the view is built anew for every change.
+const PIXELS: u32 = 64 * 36;
+
+/// A scene and its changed copies, made ready.
+pub struct Copies {
+    whole: Stage,
+    changed: Vec<Stage>,
+}
+
+impl Copies {
+    /// Changes a scene in every way.
+    pub fn new(scene: &Scene, offset: Offset) -> Result<Self> {
+        let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
+        let (width, height) = parts.camera.resolution();
+        let shrink = (f64::from(PIXELS) / (f64::from(width) * f64::from(height))).sqrt().min(1.0);
+        let shrunk = |pixels: u32| ((f64::from(pixels) * shrink) as u32).max(1);
+        parts.camera = parts.camera.resized(shrunk(width), shrunk(height));
+        let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset));
+        let whole = ready(parts.clone())?;
+        let changed = CHANGES.iter().map(|(_, change, _)| ready(change.of(parts.clone(), &whole)));
+        Ok(Self { changed: changed.collect::<Result<_>>()?, whole })
+    }
+}
+
+/// A scene and its changed copies, with what is true there: checks any number of strategies, on any threads.
+pub struct Metamorphic<'a> {
+    whole: Verifier<'a>,
+    changed: Vec<Verifier<'a>>,
+}
+
+impl<'a> Metamorphic<'a> {
+    /// Finds the truth at a few receivers of each copy.
+    pub fn new(copies: &'a Copies, options: Options) -> Self {
+        let whole = Verifier::new(&copies.whole, options);
+        let scale = copies.whole.scene().radius();
+        let changed = CHANGES.iter().zip(&copies.changed).map(|((_, change, _), stage)| {
+            let there: HashMap<u32, &Receiver> = stage.receivers().iter().map(|at| (at.pixel, at)).collect();
+            let same = |at: &Receiver| {
+                let place = change.place(at.position);
+                // On another side of a silhouette a pixel sees something else.
+                let tolerance = 1e-3 * change.factor() as f32 * scale + 0.02;
+                there.get(&at.pixel).copied().filter(|there| there.position.distance(place) < tolerance)
+            };
+            let receivers = whole.receivers.iter().filter_map(same).copied().collect();
+            Verifier::at(stage, receivers, options)
+        });
+        Self { changed: changed.collect(), whole }
+    }
+
+    /// Checks the truth itself: the image of each copy is that of the scene.
+    pub fn image(&self) -> Vec<Check> {
+        let sum = |verifier: &Verifier<'_>, pixels: &[u32]| {
+            let kept = verifier.receivers.iter().zip(&verifier.truths).filter(|(at, _)| pixels.contains(&at.pixel));
+            kept.map(|(_, truth)| truth.sum(|_| true))
+                .fold((0.0, 0.0, 8), |(mean, variance, _), m| (mean + m.mean, variance + m.variance / m.n as f64, m.n))
+        };
+        let check = |((name, _, tolerance), changed): (&(&'static str, Change, f64), &Verifier<'_>)| {
+            let pixels: Vec<u32> = changed.receivers.iter().map(|at| at.pixel).collect();
+            let (wanted, own, n) = sum(&self.whole, &pixels);
+            let (found, other, _) = sum(changed, &pixels);
+            let error = (own + other + (tolerance * wanted).powi(2)).sqrt();
+            let t = if found == wanted { 0.0 } else { ((found - wanted) / error).abs() };
+            let limit = student_quantile(1.0 - 0.5 * self.whole.options.level.powi(2), 2 * n - 2);
+            let off = 100.0 * (found / wanted.max(f64::MIN_POSITIVE) - 1.0);
+            let detail = format!("|t| of the image at {} pixels: {off:+.4} % off", pixels.len());
+            Check::new(name, t, limit, if wanted > 0.0 { detail } else { "the image is black".into() })
+        };
+        CHANGES.iter().zip(&self.changed).map(check).collect()
+    }
+
+    /// Checks a strategy on each copy.
+    pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
+        let seed = self.whole.options.seed;
+        let build = |verifier: &Verifier<'_>| strategy.build(BuildContext { stage: verifier.stage, seed });
+        let base = build(&self.whole)?;
+        let samplers = self.changed.iter().map(build).collect::<Result<Vec<_>>>()?;
+        let subjects =
+            || self.changed.iter().zip(&samplers).map(|(verifier, sampler)| Subject { verifier, sampler: &**sampler });
+        let mut checks = vec![valid(subjects())];
+        if strategy.info().claim != Claim::Unbiased || !checks[0].passed {
+            return Ok(checks);
+        }
+        checks.extend(self.counts(&*base, &samplers));
+        for ((name, ..), subject) in CHANGES.iter().zip(subjects()) {
+            let mut check = estimate(name, &subject);
+            if !check.passed {
+                check = estimate(name, &Subject { verifier: subject.verifier.second(), ..subject });
+            }
+            checks.push(check);
+        }
+        Ok(checks)
+    }
+
+    /// Expected counts at the scaled place of each receiver against those at the place itself, if the sampler tells them.
+    fn counts(&self, base: &dyn AnySampler, samplers: &[Box<dyn AnySampler>]) -> Option<Check> {
+        let lights = self.whole.stage.scene().lights().len();
+        let mut worst = (0.0f64, String::new());
+        for ((name, change, _), other) in CHANGES.iter().zip(samplers) {
+            let Change::Scaled(_) = change else { continue };
+            for at in &self.whole.receivers {
+                let (mut here, mut there) = (vec![0.0; lights], vec![0.0; lights]);
+                let moved = Receiver { position: change.place(at.position), ..*at };
+                if !(base.expected_counts(at, &mut here) && other.expected_counts(&moved, &mut there)) {
+                    return None;
+                }
+                let total: f64 = here.iter().map(|&c| f64::from(c)).sum();
+                let apart: f64 = here.iter().zip(&there).map(|(&a, &b)| f64::from((a - b).abs())).sum();
+                let share = if apart == 0.0 { 0.0 } else { apart / total };
+                if share > worst.0 || share.is_nan() {
+                    worst = (share, format!("; worst at pixel {}, {name}", at.pixel));
+                }
+            }
+        }
+        let detail = format!("greatest share of expected counts that a change of scale moves{}", worst.1);
+        // A light on the very edge of a range, or a tie between two splits, may fall either way.
+        Some(Check::new(COUNTS, worst.0, 1e-3, detail))
+    }
+}
+
+/// Picks on every copy are lights of the table with weights that are finite and 0 or more.
+fn valid<'s, 'v: 's>(subjects: impl Iterator<Item = Subject<'s, 'v>>) -> Check {
+    let (mut wrong, mut all) = (0, 0);
+    for subject in subjects {
+        let picks = subject.calls(subject.stage().receivers(), subject.receivers(), 0..8).concat();
+        wrong += picks_in_range(&picks, subject.stage().scene().lights().len()) + picks_valid(&picks);
+        all += picks.len();
+    }
+    Check::new(VALID, wrong as f64, 0.0, format!("ids beyond the table and impossible weights, of {all} picks"))
+}
+
+/// The mean estimate on a copy is the truth there.
+fn estimate(name: &'static str, subject: &Subject<'_, '_>) -> Check {
+    let sites = observe::sites(subject);
+    let distance = Distance::new(&sites);
+    let (worst, place) = distance.worst();
+    let options = &subject.verifier.options;
+    let limit = surprise(sidak(options.level, sites.len() + 1));
+    let (mean, tested) = (distance.of_mean(), distance.tested());
+    let detail = format!(
+        "greatest ln 1/p of {} receivers and their mean ({mean:.2}), {tested:.2} % tested, seed {}{place}",
+        sites.len(),
+        options.seed
+    );
+    Check::new(name, worst.max(mean), limit, detail)
+}
+
+impl Change {
+    fn factor(self) -> f64 {
+        if let Self::Scaled(factor) = self { factor } else { 1.0 }
+    }
+
+    fn turn(self) -> DQuat {
+        if self == Self::Turned {
+            DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 1.0)
+        } else {
+            DQuat::IDENTITY
+        }
+    }
+
+    /// Where a point comes to lie.
+    fn place(self, at: Vec3) -> Vec3 {
+        let shift = if self == Self::Moved { DVec3::new(1e5, -1e5, 0.0) } else { DVec3::ZERO };
+        (self.turn() * at.as_dvec3() * self.factor() + shift).as_vec3()
+    }
+
+    fn direction(self, along: Vec3) -> Vec3 {
+        (self.turn() * along.as_dvec3()).as_vec3()
+    }
+
+    /// The parts of the changed scene.
+    fn of(self, mut parts: Parts, whole: &Stage) -> Parts {
+        match self {
+            Self::Scaled(_) | Self::Turned | Self::Moved => self.carry(&mut parts),
+            Self::Permuted => {
+                let mut order: Vec<usize> = (0..parts.lights.len()).collect();
+                order.sort_by_key(|&i| hash(&[i as u64]));
+                parts.lights = order.iter().map(|&i| parts.lights[i]).collect();
+            }
+            Self::Split => {
+                if let Some(brightest) = brightest(whole) {
+                    let half = with_colour(parts.lights[brightest], |colour| colour * 0.5);
+                    parts.lights[brightest] = half;
+                    parts.lights.push(half);
+                }
+            }
+            Self::Black => {
+                let black: Vec<Shape> = parts
+                    .lights
+                    .iter()
+                    .filter(|light| !matches!(light, Shape::Triangle { .. }))
+                    .take(3)
+                    .map(|light| with_colour(*light, |_| Vec3::ZERO))
+                    .chain([point(whole.scene().bounds().1, 0.0)])
+                    .collect();
+                parts.lights.splice(0..0, black);
+            }
+            Self::Hidden => {
+                let (low, high) = whole.scene().bounds();
+                let size = 0.05 * whole.scene().radius();
+                let corner = Vec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), low.z - 4.0 * size);
+                parts.surfaces.extend(cuboid(corner, corner + size));
+                let strength: f32 =
+                    whole.scene().lights().iter().map(|light| light.peak_intensity().max_element()).sum();
+                parts.lights.push(point(corner + 0.5 * size, strength.clamp(1.0, 1e20)));
+            }
+        }
+        parts
+    }
+
+    /// Carries everything to its place.
+    fn carry(self, parts: &mut Parts) {
+        let squared = (self.factor() * self.factor()) as f32;
+        for light in &mut parts.lights {
+            match light {
+                Shape::Point { position, intensity } => {
+                    *position = self.place(*position);
+                    *intensity *= squared;
+                }
+                Shape::Spot { position, axis, intensity, .. } => {
+                    *position = self.place(*position);
+                    *axis = self.direction(*axis);
+                    *intensity *= squared;
+                }
+                Shape::Directional { towards, .. } => *towards = self.direction(*towards),
+                Shape::Triangle { corners, .. } => *corners = corners.map(|corner| self.place(corner)),
+            }
+        }
+        for surface in &mut parts.surfaces {
+            surface.corners = surface.corners.map(|corner| self.place(corner));
+        }
+        parts.camera = parts.camera.turned(self.place(parts.camera.position()), self.turn());
+    }
+}
+
+/// The light that adds most at a few receivers with nothing in between; `None` where none adds anything.
+fn brightest(stage: &Stage) -> Option<usize> {
+    let receivers = spread(stage.receivers(), 64);
+    let added =
+        |light| receivers.iter().map(|at| f64::from(crate::shading::importance::importance(light, at))).sum::<f64>();
+    let sums: Vec<f64> = stage.scene().lights().iter().map(added).collect();
+    (0..sums.len()).filter(|&i| sums[i] > 0.0).max_by(|&a, &b| sums[a].total_cmp(&sums[b]))
+}
+
+fn with_colour(mut shape: Shape, change: impl Fn(Vec3) -> Vec3) -> Shape {
+    match &mut shape {
+        Shape::Point { intensity: colour, .. }
+        | Shape::Spot { intensity: colour, .. }
+        | Shape::Directional { irradiance: colour, .. }
+        | Shape::Triangle { radiance: colour, .. } => *colour = change(*colour),
+    }
+    shape
+}
