@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1.0 / 1_073_741_824.0;
 const USED_UP: f64 = 1.0 / 65_536.0;
 
 /// Slots whose shares are remembered, in nodes.
-const REMEMBERED: usize = 1024;
+const REMEMBERED: usize = 4096;
 
 /// What has been worked out at the receiver that was arrived at.
 ///
