@@ -9,12 +9,14 @@
 //! | `shadow-ray-ratio/bare-over-ours` | the two taken in turns | 0.95 or more |
 //! | `influence/query` | the list of lights in range of a visible point | 400 ns + 25 ns a listed light or less |
 //! | `alias-table/draw` | a light by its flux | |
+//! | `light-tree/arity-8`, `arity-2` | a pick of the light tree, 64 passes a receiver | 500 ns, 900 ns or less |
 //! | `power/without-ray` | a pick by flux and its shading, everything but the ray | 150 ns or less |
 
 mod common;
 
 use citylights::base::colour::luminance;
 use citylights::base::discrete::AliasTable;
+use citylights::base::draws::Points;
 use citylights::base::random::{RunKey, Stream};
 use citylights::measure::target::spread;
 use citylights::render::film::Film;
@@ -25,6 +27,7 @@ use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::{Arrival, contribution};
 use citylights::shading::importance::importance;
 use citylights::strategy::BuildContext;
+use citylights::strategy::erased::{Frame, PickBuffer};
 use citylights::strategy::registry::parse;
 use citylights::visibility::influence::InfluenceTree;
 use citylights::visibility::offset::Segment;
@@ -46,6 +49,7 @@ fn main() {
     shadow_rays(&mut criterion, &stage, &questions);
     influence_query(&mut criterion, &stage);
     alias_draw(&mut criterion, &stage);
+    light_tree_pick(&mut criterion, &stage);
     power_without_ray(&mut criterion, stage);
     criterion.final_summary();
 }
@@ -142,6 +146,27 @@ fn alias_draw(criterion: &mut Criterion<Reported>, stage: &Stage) {
     group.bench_function("draw", |b| {
         common::per_element(b, DRAWS, || (0..DRAWS).map(|_| table.pick(rng.bits())).fold(0, usize::wrapping_add));
     });
+    group.finish();
+}
+
+fn light_tree_pick(criterion: &mut Criterion<Reported>, stage: &Stage) {
+    const PASSES: u32 = 64;
+    let receivers = spread(stage.receivers(), 1024);
+    let frame = Frame { receivers: &receivers, key: RunKey { seed: 1, run: 0 }, points: Points::R2 };
+    let mut group = common::flat(criterion, "light-tree");
+    for arity in [8, 2] {
+        let sampler = parse(&format!("light-tree:arity={arity}"))
+            .and_then(|tree| tree.build(BuildContext { stage, seed: 1 }))
+            .expect("a light tree can be built for any scene");
+        let block = sampler.begin(frame, 0..PASSES);
+        let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
+        group.bench_function(format!("arity-{arity}"), |b| {
+            common::per_element(b, receivers.len() * PASSES as usize, || {
+                worker.fill(&receivers, 0..PASSES, false, &mut buffer);
+                buffer.len()
+            });
+        });
+    }
     group.finish();
 }
 

@@ -4,20 +4,23 @@
 
 mod common;
 
+use citylights::base::colour::luminance;
 use citylights::base::random::Stream;
 use citylights::scene::Scene;
 use citylights::scene::light::{LightId, Shape};
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
+use citylights::strategy::registry;
 use citylights::strategy::tree::Tree;
 use citylights::strategy::tree::importance::How;
+use citylights::verify::{Options, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
-use common::{expected, ground, moon, on_sphere, panel, point, receiver, sixteen, spot, stage_with};
+use common::{expected, ground, image, moon, on_sphere, panel, point, receiver, sixteen, spot, stage, stage_with};
 use glam::Vec3;
 
 /// Every way to weigh and walk that the tree has.
-const WAYS: [&str; 12] = [
+const WAYS: [&str; 15] = [
     "light-tree",
     "light-tree:arity=2",
     "light-tree:arity=4",
@@ -30,6 +33,9 @@ const WAYS: [&str; 12] = [
     "light-tree:split=0.5",
     "light-tree:split=0.95,cut=64",
     "light-tree:mix=0.25,picks=3",
+    "light-tree:mix=0.25,split=0.9",
+    "stochastic-lightcuts",
+    "stochastic-lightcuts:cut=2",
 ];
 
 /// Lights of all kinds in clusters, on walls and in rows, over 200 m; strengths over six orders of magnitude.
@@ -125,7 +131,8 @@ fn the_probabilities_are_those_of_one_pick_or_less() {
     let lights = many(700, 3);
     let receivers = hard_receivers(&lights, 100);
     let stage = everything(lights);
-    for way in WAYS.iter().filter(|way| !way.contains("split") && !way.contains("picks")) {
+    let many = ["split", "picks", "stochastic"];
+    for way in WAYS.iter().filter(|way| !many.iter().any(|word| way.contains(word))) {
         let mut lost = 0.0;
         for at in &receivers {
             let sum: f64 = expected(way, &stage, at).iter().map(|&p| f64::from(p)).sum();
@@ -310,4 +317,60 @@ fn all_kinds_of_light_are_in_proportion() {
     for (light, (a, b)) in tree.iter().zip(&exact).enumerate() {
         assert!((a - b).abs() < 0.15, "light {light}: {a} by the tree, {b} by its irradiance");
     }
+}
+
+#[test]
+fn every_way_keeps_the_contract() {
+    let stage = stage(sixteen());
+    let verifier = Verifier::new(&stage, Options { receivers: 12, draws: 4_000, ..Options::default() });
+    for way in WAYS {
+        for check in verifier.verify(&registry::parse(way).expect(way)).expect(way) {
+            assert!(check.passed, "{way}: {check}");
+        }
+    }
+}
+
+/// Points of two colours over a ground with boxes.
+fn lamps() -> Stage {
+    let mut parts = sixteen();
+    parts.lights = (0..300)
+        .map(|i| {
+            let at = Vec3::new((i % 20) as f32 - 10.0, (i / 20) as f32 * 1.4 - 10.0, 4.0 + (i % 7) as f32);
+            Shape::Point { position: at, intensity: [Vec3::new(9.0, 5.0, 2.0), Vec3::new(2.0, 5.0, 9.0)][i % 2] }
+        })
+        .collect();
+    stage(parts)
+}
+
+#[test]
+fn lightcuts_without_error_are_the_sum_of_all_lights() {
+    let stage = lamps();
+    let (exact, cut) = (image("all", &stage, 1), image("lightcuts:error=0,cut=100000", &stage, 1));
+    for (a, b) in exact.iter().zip(&cut) {
+        assert!((*a - *b).abs().max_element() <= 1e-4 * a.max_element(), "{a} by all, {b} by the cut");
+    }
+}
+
+#[test]
+fn lightcuts_err_by_about_their_bound() {
+    let stage = lamps();
+    let exact = image("all", &stage, 1);
+    let mean_error = |way: &str| {
+        let errors = image(way, &stage, 1).into_iter().zip(&exact).map(|(a, b)| {
+            let (a, b) = (f64::from(luminance(a)), f64::from(luminance(*b)));
+            (a - b).abs() / b.max(1e-9)
+        });
+        errors.sum::<f64>() / exact.len() as f64
+    };
+    let (coarse, fine) = (mean_error("lightcuts:error=0.2"), mean_error("lightcuts"));
+    // Each cluster may err by 0.02 of the whole; they are many, but neither all at their bounds nor all on one side.
+    assert!(fine > 0.0 && fine < 0.04, "a mean error of {fine}");
+    assert!(coarse > 1.5 * fine, "{coarse} with ten times the bound, {fine} without");
+}
+
+#[test]
+fn lightcuts_are_without_noise() {
+    let stage = lamps();
+    let (one, many) = (image("lightcuts", &stage, 1), image("lightcuts", &stage, 3));
+    assert!(one.iter().zip(&many).all(|(a, b)| (*a - *b).abs().max_element() <= 1e-6 * a.max_element()));
 }

@@ -142,7 +142,7 @@ impl<const N: usize> LightSampler for Sampler<N> {
             self.tree.cut(
                 at,
                 most,
-                |cluster| if cluster.uniformity(at) < threshold { cluster.weight } else { 0.0 },
+                |cluster, weight| if cluster.uniformity(at) < threshold { weight } else { 0.0 },
                 &mut scratch.cut,
                 &mut scratch.memory,
                 tally,

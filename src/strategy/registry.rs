@@ -4,8 +4,8 @@ use super::erased::{AnySampler, AnyStrategy, Spread};
 use super::parameters::{Arguments, Parameter};
 use super::{BuildContext, Info, Role, Strategy};
 use super::{
-    all, influence, influence_pick, influence_tail, intensity, light_tree, null, oracle, power, resampled, restir,
-    stochastic_cull, uniform,
+    all, influence, influence_pick, influence_tail, intensity, light_tree, lightcuts, null, oracle, power, resampled,
+    restir, stochastic_cull, stochastic_lightcuts, uniform,
 };
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
@@ -23,6 +23,8 @@ pub const STRATEGIES: &[Entry] = &[
     Entry::of::<influence_tail::InfluenceTail>(),
     Entry::of::<stochastic_cull::StochasticCull>(),
     Entry::of::<light_tree::LightTree>(),
+    Entry::of::<lightcuts::Lightcuts>(),
+    Entry::of::<stochastic_lightcuts::StochasticLightcuts>(),
     Entry::of::<resampled::Resampled>(),
     Entry::of::<restir::Restir>(),
     Entry::of::<oracle::Oracle>(),

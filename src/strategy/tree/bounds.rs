@@ -130,20 +130,27 @@ impl Bounds {
 
     /// The orientation measure of Conty Estevez and Kulla 2018: pi for one direction of a Lambertian emitter, 4 pi for all.
     fn spread(&self) -> f32 {
+        // The common cases: points among them, or triangles that all face one way.
+        if self.cut < 0.0 {
+            return 4.0 * PI;
+        }
+        if self.cut == 0.0 && self.axis_low == self.axis_high {
+            return PI;
+        }
         let (around, emission) = (self.cosine().min(1.0).acos(), self.cut.max(0.0).acos());
         let all = (around + emission).min(PI);
         let (sin, cos) = around.sin_cos();
         2.0 * PI * (1.0 - cos) + FRAC_PI_2 * (2.0 * (all - around) * sin - (around - 2.0 * all).cos() + cos)
     }
 
-    /// Cosine of a half-angle around the centre of the box of directions that holds them all.
+    /// Cosine of a half-angle around the centre of the box of directions that holds them all; of lights with directions.
     ///
     /// For a unit vector w within half a diagonal `r` of `c`: c.w = (1 + |c|^2 - |w - c|^2) / 2 >= (1 + |c|^2 - r^2) / 2.
     fn cosine(&self) -> f32 {
         let centre = 0.5 * (self.axis_low + self.axis_high);
         let (c2, r2) = (centre.length_squared(), (0.5 * (self.axis_high - self.axis_low)).length_squared());
-        // Lights without direction, or opposite ones.
-        if self.cut < 0.0 || c2 < 1e-6 { -1.0 } else { (0.5 * (1.0 + c2 - r2) / c2.sqrt()).max(-1.0) }
+        // Opposite ones.
+        if c2 < 1e-6 { -1.0 } else { (0.5 * (1.0 + c2 - r2) / c2.sqrt()).max(-1.0) }
     }
 }
 

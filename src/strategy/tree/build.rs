@@ -1,7 +1,7 @@
 //! How does a set of lights become a tree?
 //!
-//! From the top: a node's set is cut in two, then the costliest part again, until there are `N`. That is the binary tree of
-//! the heuristic with the levels that matter most merged, without ever holding it.
+//! From the top: a node's set is cut in two, then the costliest part again, until there are `N` or each would fit a node.
+//! That is the binary tree of the heuristic with the levels that matter most merged, without ever holding it.
 
 use super::bounds::{Bounds, Item};
 use super::node::Node;
@@ -75,24 +75,30 @@ fn grow<const N: usize>(nodes: &mut Vec<Node<N>>, items: &mut [Item], first: u32
 
 /// The parts of a node's set, in order.
 fn parts<const N: usize>(items: &mut [Item], depth: u32) -> Vec<Part> {
+    let part = |items: &[Item], range: Range<usize>| Part { bounds: Bounds::of(&items[range.clone()]), range };
     let mut parts = Vec::with_capacity(N);
-    parts.push(Part { range: 0..items.len(), bounds: Bounds::of(items) });
-    while parts.len() < N {
-        let Some(costliest) = next::<N>(&parts) else { break };
+    parts.push(part(items, 0..items.len()));
+    while parts.len() < N
+        && let Some(costliest) = costliest::<N>(&parts)
+    {
         let range = parts[costliest].range.clone();
         let own = &mut items[range.clone()];
         let middle = range.start + if depth < BY_COST { split(own) } else { own.len() / 2 };
-        let part = |range: Range<usize>| Part { bounds: Bounds::of(&items[range.clone()]), range };
-        let (left, right) = (part(range.start..middle), part(middle..range.end));
-        parts.splice(costliest..=costliest, [left, right]);
+        parts.splice(costliest..=costliest, [range.start..middle, middle..range.end].map(|range| part(items, range)));
+    }
+    // What is left of the room goes to parts that would fill a node of their own badly: their lights come here.
+    while let Some(smallest) = smallest(&parts)
+        && parts.len() + parts[smallest].range.len() - 1 <= N
+    {
+        let range = parts[smallest].range.clone();
+        parts.splice(smallest..=smallest, range.map(|i| part(items, i..i + 1)));
     }
     parts
 }
 
-/// The part to cut next, if any is worth it: of those that do not fit a node, the first of greatest cost, or the largest
-/// where they cost nothing, being all in one place. Of the others the smallest, if its lights all find room: a node less.
-fn next<const N: usize>(parts: &[Part]) -> Option<usize> {
-    let room = N - parts.len();
+/// The part to cut next, of those that do not fit a node: the first of greatest cost, or the largest where they cost
+/// nothing, being all in one place.
+fn costliest<const N: usize>(parts: &[Part]) -> Option<usize> {
     let mut best: Option<(f64, usize, usize)> = None;
     for (i, part) in parts.iter().enumerate().filter(|(_, part)| part.range.len() > N) {
         let (cost, len) = (part.bounds.cost(), part.range.len());
@@ -103,9 +109,11 @@ fn next<const N: usize>(parts: &[Part]) -> Option<usize> {
             best = Some((cost, len, i));
         }
     }
-    let smallest = || {
-        let small = parts.iter().enumerate().filter(|(_, part)| part.range.len() > 1);
-        small.min_by_key(|(_, part)| part.range.len()).filter(|(_, part)| part.range.len() <= room + 1)
-    };
-    best.map(|(_, _, i)| i).or_else(|| smallest().map(|(i, _)| i))
+    best.map(|(_, _, i)| i)
+}
+
+/// The first smallest part of several lights.
+fn smallest(parts: &[Part]) -> Option<usize> {
+    let several = parts.iter().enumerate().filter(|(_, part)| part.range.len() > 1);
+    several.min_by_key(|(_, part)| part.range.len()).map(|(i, _)| i)
 }

@@ -64,12 +64,13 @@ impl Cut {
 
 impl<const N: usize> Tree<N> {
     /// Works out the cut at the receiver that `memory` has arrived at: `most` parts at the most, or the root's slots if those
-    /// are more. `need` is asked for each cluster: its slot and its node.
+    /// are more. `need` is asked for each cluster that is no
+    /// light alone, with its weight at the receiver in lx.
     pub(in crate::strategy) fn cut<T: Tally>(
         &self,
         at: &Receiver,
         most: usize,
-        need: impl Fn(Cluster<'_, N>) -> f32,
+        need: impl Fn(&Cluster<'_, N>, f32) -> f32,
         cut: &mut Cut,
         memory: &mut Memory<N>,
         tally: &mut T,
@@ -93,7 +94,7 @@ impl<const N: usize> Tree<N> {
         &self,
         node: usize,
         at: &Receiver,
-        need: &impl Fn(Cluster<'_, N>) -> f32,
+        need: &impl Fn(&Cluster<'_, N>, f32) -> f32,
         cut: &mut Cut,
         memory: &mut Memory<N>,
         tally: &mut T,
@@ -103,17 +104,32 @@ impl<const N: usize> Tree<N> {
             return;
         }
         for slot in (0..N).filter(|&j| shares.share(j) > 0.0) {
-            let need = match self.nodes[node].slot(slot) {
-                Slot::Node(offset) => need(Cluster {
-                    parent: &self.nodes[node],
-                    slot,
-                    node: &self.nodes[node + offset as usize],
-                    weight: (shares.share(slot) * shares.total()) as f32,
-                }),
-                Slot::Light(_) | Slot::Empty => 0.0,
-            };
+            let weight = (shares.share(slot) * shares.total()) as f32;
+            let cluster = self.cluster(node, slot);
+            let need = if cluster.node.is_some() { need(&cluster, weight) } else { 0.0 };
             cut.parts.push(Part { need, node: node as u32, slot: slot as u32 });
         }
+    }
+
+    fn cluster(&self, node: usize, slot: usize) -> Cluster<'_, N> {
+        let parent = &self.nodes[node];
+        let node = match parent.slot(slot) {
+            Slot::Node(offset) => Some(&self.nodes[node + offset as usize]),
+            Slot::Light(_) | Slot::Empty => None,
+        };
+        Cluster { parent, slot, node }
+    }
+
+    /// The filled slots of a node, and what is in each.
+    pub(in crate::strategy) fn clusters(&self, node: usize) -> impl Iterator<Item = (Cluster<'_, N>, Below)> {
+        (0..N).filter_map(move |slot| {
+            let below = match self.nodes[node].slot(slot) {
+                Slot::Light(light) => Below::Light(light),
+                Slot::Node(offset) => Below::Node(node + offset as usize),
+                Slot::Empty => return None,
+            };
+            Some((self.cluster(node, slot), below))
+        })
     }
 
     fn slot(&self, part: Part) -> Slot {
@@ -172,13 +188,21 @@ impl<const N: usize> Tree<N> {
     }
 }
 
-/// A cluster whose need is asked for.
+/// What a slot holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::strategy) enum Below {
+    /// A light.
+    Light(LightId),
+    /// A cluster, by its node.
+    Node(usize),
+}
+
+/// A filled slot of a node: a cluster, or a light alone.
 pub(in crate::strategy) struct Cluster<'a, const N: usize> {
-    pub(super) parent: &'a Node<N>,
-    pub(super) slot: usize,
-    pub(super) node: &'a Node<N>,
-    /// Its weight at the receiver, in lx.
-    pub(in crate::strategy) weight: f32,
+    parent: &'a Node<N>,
+    slot: usize,
+    /// Its node; `None` of a light alone.
+    node: Option<&'a Node<N>>,
 }
 
 impl<const N: usize> Cluster<'_, N> {
@@ -193,11 +217,17 @@ impl<const N: usize> Cluster<'_, N> {
         if near <= 0.0 {
             return 0.0;
         }
-        let (e, g) = (f64::from(self.node.unevenness), (far - near).powi(2) / (3.0 * near * far));
+        let (e, g) =
+            (f64::from(self.node.map_or(0.0, |node| node.unevenness)), (far - near).powi(2) / (3.0 * near * far));
         (1.0 + (e + g + e * g).sqrt()).powf(-0.25) as f32
     }
 
-    /// The most that the cluster can add, in lx.
+    /// Sum of the luminances of its lights' peak intensities, in cd.
+    pub(in crate::strategy) fn peak(&self) -> f32 {
+        self.parent.peak[self.slot]
+    }
+
+    /// The most irradiance that it can send, in lx.
     pub(in crate::strategy) fn bound(&self, at: &Receiver) -> f32 {
         self.parent.upper_bound(self.slot, at)
     }

@@ -101,6 +101,11 @@ impl<const N: usize> Tree<N> {
         self.order.iter().map(|&light| (light, peak(&scene.lights()[light as usize])))
     }
 
+    /// The number of nodes; the root is node 0, each node before those below it.
+    pub(in crate::strategy) fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&self.nodes[..])

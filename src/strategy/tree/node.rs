@@ -102,13 +102,9 @@ impl<const N: usize> Node<N> {
         }
     }
 
-    /// The slots, a bit each, whose squared half diagonal is less than `share` of their squared distance, which are all above
-    /// the receiver's horizon, and whose lights shine there alike: the same way, or all ways.
-    pub(super) fn far(&self, at: &Receiver, share: f32) -> u8 {
-        (0..N).map(|j| u8::from(self.is_far(j, at, share)) << j).sum()
-    }
-
-    fn is_far(&self, j: usize, at: &Receiver, share: f32) -> bool {
+    /// Whether the squared half diagonal of a slot is less than `share` of its squared distance, all of it is above the
+    /// receiver's horizon, and its lights shine there alike: the same way, or all ways.
+    pub(super) fn is_far(&self, j: usize, at: &Receiver, share: f32) -> bool {
         let [centre, half, axis, axis_half] =
             [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
         let to_centre = centre - at.position;

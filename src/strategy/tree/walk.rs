@@ -19,7 +19,7 @@ const LEAST_SHARE: f64 = 1.0 / 1_073_741_824.0;
 const USED_UP: f64 = 1.0 / 65_536.0;
 
 /// Slots whose shares are remembered, in nodes.
-const REMEMBERED: usize = 1024;
+const REMEMBERED: usize = 4096;
 
 /// What has been worked out at the receiver that was arrived at.
 ///
@@ -50,8 +50,6 @@ impl<const N: usize> Default for Memory<N> {
 pub(super) struct Shares<const N: usize> {
     /// Weights summed up to each slot, in lx.
     ends: [f64; N],
-    /// Bit `j`: slot `j` is far away.
-    far: u8,
 }
 
 impl<const N: usize> Shares<N> {
@@ -91,7 +89,7 @@ impl<const N: usize> Tree<N> {
         if memory.arrival == 0 || memory.kept.is_empty() {
             memory.arrival = 1;
             memory.kept.clear();
-            memory.kept.resize(REMEMBERED / N, Kept { node: 0, arrival: 0, shares: Shares { ends: [0.0; N], far: 0 } });
+            memory.kept.resize(REMEMBERED / N, Kept { node: 0, arrival: 0, shares: Shares { ends: [0.0; N] } });
         }
         self.weigh_directional(at, &mut memory.directional);
         tally.weighed(self.directional.len() as u64);
@@ -146,8 +144,9 @@ impl<const N: usize> Tree<N> {
             match self.nodes[node].slot(j) {
                 Slot::Light(light) => return Some((light, pmf)),
                 Slot::Node(offset) => {
+                    let far = self.is_far(node, j, at);
                     node += offset as usize;
-                    if shares.far >> j & 1 == 1 {
+                    if far {
                         let (light, share) = self.pick_far(&self.nodes[node], u);
                         return Some((light, pmf * share));
                     }
@@ -187,7 +186,7 @@ impl<const N: usize> Tree<N> {
             let (j, below) = self.towards(node, place);
             pmf *= shares.share(j);
             let Some(below) = below else { return pmf };
-            if shares.far >> j & 1 == 1 {
+            if self.is_far(node, j, at) {
                 return pmf * self.far_share(&self.nodes[below], place);
             }
             node = below;
@@ -233,7 +232,7 @@ impl<const N: usize> Tree<N> {
             }
             match self.nodes[node].slot(j) {
                 Slot::Light(light) => add(counts, light, share),
-                Slot::Node(offset) if shares.far >> j & 1 == 1 => {
+                Slot::Node(offset) if self.is_far(node, j, at) => {
                     let below = &self.nodes[node + offset as usize];
                     below.lights().for_each(|place| {
                         add(counts, self.order[place], share * self.far_share(below, place));
@@ -301,13 +300,19 @@ impl<const N: usize> Tree<N> {
         if far > 0.0 {
             let total = 0.5 * (near + far);
             let (by_near, by_far) = (0.5 * total / near, 0.5 * total / far);
-            for j in 0..N {
-                let weight = f64::from(weights.near[j]) * by_near + f64::from(weights.far[j]) * by_far;
+            for ((place, &near), &far) in ends.iter_mut().zip(&weights.near).zip(&weights.far) {
+                let weight = f64::from(near) * by_near + f64::from(far) * by_far;
                 end += if weight > 0.0 { weight.max(total * LEAST_SHARE) } else { 0.0 };
-                ends[j] = end;
+                *place = end;
             }
         }
-        Shares { ends, far: if self.how.far > 0.0 { node.far(at, self.how.far) } else { 0 } }
+        Shares { ends }
+    }
+
+    /// Whether a light of that slot is chosen by peak intensity at once.
+    #[inline]
+    fn is_far(&self, node: usize, j: usize, at: &Receiver) -> bool {
+        self.how.far > 0.0 && self.nodes[node].is_far(j, at, self.how.far)
     }
 
     /// A light of a node by peak intensity, and its probability there.

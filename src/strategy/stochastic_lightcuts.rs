@@ -1,0 +1,93 @@
+//! A cut through a binary tree of lights, and one light at random from each of its clusters.
+//!
+//! The cut is found before anything is drawn: from the root, the cluster that could add most is replaced by its halves until
+//! there are `cut`. A pick from each stratifies the choice. Down a cluster, the probability of a half is the mean of two, one
+//! with its least distance, one with its greatest.
+//!
+//! Of the sources' pieces these are other ones here: halves are weighed with this project's horizons and cosines, which
+//! reject only what adds nothing, so that no branch is dead that should not be; the tree is that of
+//! [`light_tree`](super::light_tree), not a perfect one over Morton codes; and each receiver has its own cut, where the
+//! real-time version shares one among a block of pixels.
+
+use super::parameters::Arguments;
+use super::tally::{Tally, Uncounted};
+use super::tree::Tree;
+use super::tree::cut::Cut;
+use super::tree::importance::{Distance, How};
+use super::tree::walk::Memory;
+use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use crate::base::draws::Draws;
+use crate::base::error::Result;
+use crate::scene::receiver::Receiver;
+
+/// One pick from each of `cut` clusters.
+pub struct StochasticLightcuts {
+    cut: u32,
+}
+
+impl Strategy for StochasticLightcuts {
+    const INFO: Info = Info {
+        name: "stochastic-lightcuts",
+        summary: "picks a light from each cluster of a cut that is chosen by what clusters could add",
+        source: "Yuksel, HPG 2019; Lin and Yuksel, Proc. ACM CGIT 3(1) (I3D), 2020",
+        claim: Claim::Unbiased,
+        role: Role::Choosing,
+    };
+    type Sampler = Sampler;
+
+    fn configure(arguments: &mut Arguments) -> Result<Self> {
+        Ok(Self { cut: arguments.count("cut", 8, 2..=4096, "most clusters of a cut; one light is picked from each")? })
+    }
+
+    fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
+        let how = How { distance: Distance::MinMax, ..How::default() };
+        Ok(Sampler { tree: Tree::new(context.stage.scene(), context.stage.lights(), how), cut: self.cut })
+    }
+}
+
+/// [`StochasticLightcuts`] for a scene.
+pub struct Sampler {
+    tree: Tree<2>,
+    cut: u32,
+}
+
+/// What a worker keeps.
+#[derive(Default)]
+pub struct Scratch {
+    memory: Memory<2>,
+    cut: Cut,
+}
+
+impl LightSampler for Sampler {
+    type Scratch = Scratch;
+
+    fn arrive<T: Tally>(&self, at: &Receiver, scratch: &mut Scratch, tally: &mut T) {
+        let Scratch { memory, cut } = scratch;
+        self.tree.arrive(at, memory, tally);
+        self.tree.cut(at, self.cut as usize, |cluster, _| cluster.bound(at), cut, memory, tally);
+    }
+
+    fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, scratch: &mut Scratch, out: &mut Picks<'_, T>) {
+        let Scratch { memory, cut } = scratch;
+        self.tree.directional(memory).for_each(|light| out.push(light, 1.0));
+        let of = cut.parts().len() as u32;
+        for (j, &part) in (0..).zip(cut.parts()) {
+            let u = draws.choice(j, of);
+            if let Some((light, pmf)) = self.tree.pick_part(part, at, u, draws, memory, out.tally) {
+                out.push(light, ((1.0 / pmf) as f32).min(f32::MAX));
+            }
+        }
+    }
+
+    fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
+        let mut scratch = Scratch::default();
+        self.arrive(at, &mut scratch, &mut Uncounted);
+        self.tree.directional(&scratch.memory).for_each(|light| counts[light as usize] += 1.0);
+        scratch.cut.parts().iter().for_each(|&part| self.tree.expect_part(part, at, 1.0, counts));
+        true
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.tree.heap_bytes()
+    }
+}
