@@ -115,6 +115,12 @@ impl Cumulative {
     /// The index that `u` in `[0, 1)` chooses, never one of weight 0, and its probability; `None` if all are 0.
     #[inline]
     pub fn pick(&self, u: f64) -> Option<(usize, f64)> {
+        self.pick_stretched(u).map(|(index, pmf, _)| (index, pmf))
+    }
+
+    /// As [`pick`](Self::pick), with what is left of `u`: uniform in `[0, 1)` again, of as many digits less.
+    #[inline]
+    pub fn pick_stretched(&self, u: f64) -> Option<(usize, f64, f64)> {
         let total = self.total();
         if total <= 0.0 {
             return None;
@@ -124,7 +130,9 @@ impl Cumulative {
         // Rounding can bring the target up to the total; the last entry that adds something is then the choice.
         let index = self.ends.partition_point(|&end| end <= target);
         let index = if index < self.ends.len() { index } else { self.ends.partition_point(|&end| end < total) };
-        Some((index, self.pmf(index)))
+        let start = if index == 0 { 0.0 } else { self.ends[index - 1] };
+        let left = (target - start) / (self.ends[index] - start);
+        Some((index, self.pmf(index), left.clamp(0.0, 1.0 - f64::EPSILON / 2.0)))
     }
 
     /// The probability that [`pick`](Self::pick) gives `index`; 0 if all weights are 0.

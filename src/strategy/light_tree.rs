@@ -1,5 +1,9 @@
 //! Near and strong lights more often: a walk down a tree of clusters, each weighed at the receiver.
 //!
+//! At a receiver the heaviest clusters are opened first, `open` nodes of them, and each walk begins among what they hold. A
+//! cluster that seems heavy from afar is thus looked into before it is believed, and one around the receiver is no longer
+//! one number: on `downtown` the variance of a pick falls to a fifth, and all passes at a receiver share the work.
+//!
 //! `importance=box` weighs a cluster by what of its box lies above the receiver's horizon and above its emitters';
 //! `importance=classic` is the literature's weight, for comparison. `far` cuts walks short, `split` makes several where a
 //! cluster would be a bad guess, `mix` makes some of the picks by strength alone.
@@ -8,11 +12,11 @@ use super::erased::AnySampler;
 use super::parameters::Arguments;
 use super::tally::{Tally, Uncounted};
 use super::tree::Tree;
-use super::tree::cut::Cut;
+use super::tree::cut::{Cluster, Cut, Part};
 use super::tree::importance::{Distance, How, Weighing};
-use super::tree::walk::Memory;
+use super::tree::walk::{LEAST_SHARE, Memory, USED_UP};
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
-use crate::base::discrete::AliasTable;
+use crate::base::discrete::{AliasTable, Cumulative};
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::Scene;
@@ -31,10 +35,12 @@ pub struct LightTree {
 struct Walks {
     /// Picks by the whole tree; of each cluster of a cut, if there is one.
     picks: u32,
-    /// Clusters less uniform than this are split before anything is drawn; 0 for none.
+    /// Clusters less uniform than this are split before anything is drawn, each part to get picks of its own; 0 for none.
     split: f32,
     /// Most clusters of a cut.
     cut: u32,
+    /// Without splits: nodes opened at a receiver, among whose clusters a walk begins; 0 for the root alone.
+    open: u32,
     /// Share of picks made by peak intensity.
     mix: f32,
 }
@@ -59,13 +65,15 @@ impl Strategy for LightTree {
         let split = "clusters less uniform than this get picks of their own parts; 0 for never";
         let split = arguments.real("split", 0.0, 0.0..=1.0, split)?;
         let cut = arguments.count("cut", 32, 8..=4096, "most clusters with picks of their own, with split")?;
+        let open =
+            arguments.count("open", 16, 0..=1024, "nodes opened at a receiver; walks begin among what they hold")?;
         let mix = arguments.real("mix", 0.0, 0.0..=0.9, "share of picks made by peak intensity alone")?;
         let how = How {
             weighing: [Weighing::Box, Weighing::Classic][weighing],
             distance: [Distance::Mean, Distance::MinMax][distance],
             far,
         };
-        Ok(Self { arity: [2, 4, 8][arity], how, walks: Walks { picks, split, cut, mix } })
+        Ok(Self { arity: [2, 4, 8][arity], how, walks: Walks { picks, split, cut, open, mix } })
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
@@ -122,11 +130,13 @@ impl Strong {
 pub struct Scratch<const N: usize> {
     memory: Memory<N>,
     cut: Cut,
+    /// Weights of the directional lights and of the cut's parts, where a walk begins among them.
+    sums: Cumulative,
 }
 
 impl<const N: usize> Default for Scratch<N> {
     fn default() -> Self {
-        Self { memory: Memory::default(), cut: Cut::default() }
+        Self { memory: Memory::default(), cut: Cut::default(), sums: Cumulative::default() }
     }
 }
 
@@ -135,18 +145,21 @@ impl<const N: usize> LightSampler for Sampler<N> {
 
     fn arrive<T: Tally>(&self, at: &Receiver, scratch: &mut Scratch<N>, tally: &mut T) {
         self.tree.arrive(at, &mut scratch.memory, tally);
-        if self.walks.split > 0.0 {
-            let threshold = self.walks.split;
-            let most = self.walks.cut as usize;
+        let Scratch { memory, cut, sums } = scratch;
+        let Walks { split, open, .. } = self.walks;
+        if split > 0.0 {
             // Of clusters that are not uniform, the one of greatest weight first.
-            self.tree.cut(
-                at,
-                most,
-                |cluster, weight| if cluster.uniformity(at) < threshold { weight } else { 0.0 },
-                &mut scratch.cut,
-                &mut scratch.memory,
-                tally,
-            );
+            let need = |cluster: &Cluster<'_, N>, weight| if cluster.uniformity(at) < split { weight } else { 0.0 };
+            self.tree.cut(at, self.walks.cut as usize, need, cut, memory, tally);
+        } else if open > 0 {
+            let most = open as usize * (N - 1) + 1;
+            self.tree.cut(at, most, |_, weight| weight, cut, memory, tally);
+            let directional = || self.tree.directional(memory).map(|(_, weight)| weight);
+            let weights = || directional().chain(cut.parts().iter().map(Part::weight));
+            // As in a node, no part is lost to rounding beside one 10^12 times as strong.
+            let least = (weights().map(f64::from).sum::<f64>() * LEAST_SHARE) as f32;
+            sums.clear();
+            weights().for_each(|weight| sums.push(weight.max(least)));
         }
     }
 
@@ -161,6 +174,10 @@ impl<const N: usize> LightSampler for Sampler<N> {
                 out.push(light, self.weight(by_tree, light));
             } else if self.walks.split > 0.0 {
                 self.sample_cut(j, at, draws, scratch, out);
+            } else if self.walks.open > 0 {
+                if let Some((light, pmf)) = self.pick_among(j, at, draws, scratch, out.tally) {
+                    out.push(light, self.weight(pmf, light));
+                }
             } else {
                 let u = draws.choice(j, self.walks.picks);
                 if let Some((light, pmf)) = self.tree.pick(at, u, draws, &mut scratch.memory, out.tally) {
@@ -174,11 +191,20 @@ impl<const N: usize> LightSampler for Sampler<N> {
         let picks = f64::from(self.walks.picks);
         let by_strength = if self.strong.is_some() { f64::from(self.walks.mix) } else { 0.0 };
         let by_tree = picks * (1.0 - by_strength);
-        if self.walks.split > 0.0 {
+        if self.walks.split > 0.0 || self.walks.open > 0 {
             let mut scratch = Scratch::default();
             self.arrive(at, &mut scratch, &mut Uncounted);
-            self.tree.directional(&scratch.memory).for_each(|light| counts[light as usize] += by_tree as f32);
-            scratch.cut.parts().iter().for_each(|&part| self.tree.expect_part(part, at, by_tree, counts));
+            let Scratch { memory, cut, sums } = &scratch;
+            // With splits each part has picks of its own; otherwise one of the parts has each pick.
+            let share = |i| by_tree * if self.walks.split > 0.0 { 1.0 } else { sums.pmf(i) };
+            let mut next = 0;
+            for (light, _) in self.tree.directional(memory) {
+                counts[light as usize] += share(next) as f32;
+                next += 1;
+            }
+            for (i, &part) in cut.parts().iter().enumerate() {
+                self.tree.expect_part(part, at, share(next + i), counts);
+            }
         } else {
             self.tree.expect(at, by_tree, counts);
         }
@@ -208,7 +234,7 @@ impl<const N: usize> Sampler<N> {
         scratch: &mut Scratch<N>,
         out: &mut Picks<'_, T>,
     ) {
-        for light in self.tree.directional(&scratch.memory) {
+        for (light, _) in self.tree.directional(&scratch.memory) {
             out.push(light, self.weight(1.0, light));
         }
         let of = scratch.cut.parts().len() as u32;
@@ -221,11 +247,35 @@ impl<const N: usize> Sampler<N> {
         }
     }
 
+    /// A light of one of the cut's parts, or a directional one, and its probability.
+    #[inline]
+    fn pick_among<T: Tally>(
+        &self,
+        j: u32,
+        at: &Receiver,
+        draws: &mut Draws,
+        scratch: &mut Scratch<N>,
+        tally: &mut T,
+    ) -> Option<(LightId, f64)> {
+        let (index, share, left) = scratch.sums.pick_stretched(draws.choice(j, self.walks.picks))?;
+        let first = self.tree.directional(&scratch.memory).count();
+        if index < first {
+            return self.tree.directional(&scratch.memory).nth(index).map(|(light, _)| (light, share));
+        }
+        let part = scratch.cut.parts()[index - first];
+        let left = if share < USED_UP { draws.stream().uniform64() } else { left };
+        let (light, pmf) = self.tree.pick_part(part, at, left, draws, &mut scratch.memory, tally)?;
+        Some((light, share * pmf))
+    }
+
     /// How often one walk, or the walks of a cut, give the light in a place of the tree's order.
     fn chance<T: Tally>(&self, place: usize, at: &Receiver, scratch: &mut Scratch<N>, tally: &mut T) -> f64 {
-        let Scratch { memory, cut } = scratch;
-        if self.walks.split > 0.0 {
-            self.tree.probability_in_parts(place, at, cut, memory, tally)
+        let Scratch { memory, cut, sums } = scratch;
+        if self.walks.split > 0.0 || self.walks.open > 0 {
+            let found = self.tree.probability_in_parts(place, at, cut, memory, tally);
+            let Some((index, pmf)) = found else { return 0.0 };
+            let first = self.tree.directional(memory).count();
+            pmf * if self.walks.split > 0.0 { 1.0 } else { sums.pmf(first + index) }
         } else {
             self.tree.probability(place, at, memory, tally)
         }

@@ -69,7 +69,7 @@ impl LightSampler for Sampler {
 
     fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, scratch: &mut Scratch, out: &mut Picks<'_, T>) {
         let Scratch { memory, cut } = scratch;
-        self.tree.directional(memory).for_each(|light| out.push(light, 1.0));
+        self.tree.directional(memory).for_each(|(light, _)| out.push(light, 1.0));
         let of = cut.parts().len() as u32;
         for (j, &part) in (0..).zip(cut.parts()) {
             let u = draws.choice(j, of);
@@ -82,7 +82,7 @@ impl LightSampler for Sampler {
     fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
         let mut scratch = Scratch::default();
         self.arrive(at, &mut scratch, &mut Uncounted);
-        self.tree.directional(&scratch.memory).for_each(|light| counts[light as usize] += 1.0);
+        self.tree.directional(&scratch.memory).for_each(|(light, _)| counts[light as usize] += 1.0);
         scratch.cut.parts().iter().for_each(|&part| self.tree.expect_part(part, at, 1.0, counts));
         true
     }

@@ -25,11 +25,18 @@ pub struct Cut {
 pub(in crate::strategy) struct Part {
     /// How much it needs to be replaced; 0 for not at all.
     need: f32,
+    /// Its weight at the receiver, in lx.
+    weight: f32,
     node: u32,
     slot: u32,
 }
 
 impl Part {
+    /// Its weight at the receiver, in lx.
+    pub(in crate::strategy) fn weight(&self) -> f32 {
+        self.weight
+    }
+
     fn key(&self) -> (u32, u32) {
         (self.node, self.slot)
     }
@@ -107,7 +114,7 @@ impl<const N: usize> Tree<N> {
             let weight = (shares.share(slot) * shares.total()) as f32;
             let cluster = self.cluster(node, slot);
             let need = if cluster.node.is_some() { need(&cluster, weight) } else { 0.0 };
-            cut.parts.push(Part { need, node: node as u32, slot: slot as u32 });
+            cut.parts.push(Part { need, weight, node: node as u32, slot: slot as u32 });
         }
     }
 
@@ -154,7 +161,8 @@ impl<const N: usize> Tree<N> {
         }
     }
 
-    /// Probability that the light in that place of the tree's order is picked from its part; 0 if it is in none.
+    /// The part that holds the light in that place of the tree's order, by its index, and the light's probability there;
+    /// `None` if no part holds it.
     pub(in crate::strategy) fn probability_in_parts<T: Tally>(
         &self,
         place: usize,
@@ -162,20 +170,16 @@ impl<const N: usize> Tree<N> {
         cut: &Cut,
         memory: &mut Memory<N>,
         tally: &mut T,
-    ) -> f64 {
-        for &part in cut.parts() {
-            match self.slot(part) {
-                Slot::Light(light) if light == self.order[place] => return 1.0,
-                Slot::Node(offset) => {
-                    let node = (part.node + offset) as usize;
-                    if self.nodes[node].lights().contains(&place) {
-                        return self.probability_below(node, place, at, memory, tally);
-                    }
-                }
-                Slot::Light(_) | Slot::Empty => {}
+    ) -> Option<(usize, f64)> {
+        cut.parts().iter().enumerate().find_map(|(index, &part)| match self.slot(part) {
+            Slot::Light(light) => (light == self.order[place]).then_some((index, 1.0)),
+            Slot::Node(offset) => {
+                let node = (part.node + offset) as usize;
+                let held = self.nodes[node].lights().contains(&place);
+                held.then(|| (index, self.probability_below(node, place, at, memory, tally)))
             }
-        }
-        0.0
+            Slot::Empty => None,
+        })
     }
 
     /// Adds `scale` times the probabilities of [`pick_part`](Self::pick_part) to `counts`.

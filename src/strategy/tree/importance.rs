@@ -13,7 +13,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighing {
     /// Horizons of the receiver and of the emitters tested against the cluster's box; cosines are means over what of the
-    /// box lies above them.
+    /// box lies above them, its lights spread evenly in it.
     #[default]
     Box,
     /// As Conty Estevez and Kulla 2018 and pbrt-v4: the greatest emission over a cone around the bounding sphere, the
@@ -48,7 +48,15 @@ pub struct How {
 const MARGIN: f32 = 2e-6;
 
 /// Least squared distance at which a cluster around the receiver is weighed, as a share of its squared half diagonal.
-const NEAREST: f32 = 0.05;
+const NEAREST: f32 = 1e-5;
+
+/// One over the solid angle of all that lies above a horizon. The mean of cosine over squared distance, over a plane section
+/// of a box along the horizon, is the solid angle that it fills over its area: 2 pi at most, however near the box is.
+const HALF_SPACE: f32 = 1.0 / (2.0 * std::f32::consts::PI);
+
+/// Least squared distance of the classic weight, as a share of the squared half diagonal: half the radius, as in its source but
+/// in its unit.
+const HALF_RADIUS2: f32 = 0.25;
 
 /// The estimates of a node's slots, 0 where no light of a slot can add anything.
 pub(super) struct Weights<const N: usize> {
@@ -125,23 +133,28 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
 
         let near2 = box_distance2([vx, vy, vz], [hx, hy, hz], -1.0);
         let far2 = box_distance2([vx, vy, vz], [hx, hy, hz], 1.0);
-        // What is near decides: where the box begins at the receiver, cosines are those of lights right in front of it.
+        let floored2 = larger(near2, NEAREST * r2);
+        // The mean of 1/d^2 for distances evenly between the least and the greatest.
+        let typical2 = (floored2 * far2).sqrt();
         let typical = (near2 * far2).sqrt().sqrt();
-        let cosine = share * smaller(1.0, mean / typical);
+        let cosine = smaller(1.0, mean / typical);
         let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean / typical);
-        let arriving = node.peak[j] * emission * cosine;
+        // Where the box does not say which way its lights face, they are taken to face any way.
+        let unknown = smaller(1.0, half_facing / typical);
+        let emission = emission + unknown * (node.mean[j] - emission);
+        let arriving = node.peak[j] * emission * share * cosine;
+        // Area of the box seen along the normal.
+        let section = 4.0 * (mx * hy * hz + my * hz * hx + mz * hx * hy);
         // Not 0 by underflow, nor beyond f32: only what is rejected weighs nothing.
         let keep = |value: f32| {
             let value = larger(smaller(value, f32::MAX), f32::MIN_POSITIVE);
             if (top > 0.0) & (lit > 0.0) { value } else { 0.0 }
         };
-        let floored2 = larger(near2, NEAREST * r2);
         if MINMAX {
             weights.near[j] = keep(arriving / floored2);
             weights.far[j] = keep(arriving / far2);
         } else {
-            // The mean of 1/d^2 for distances evenly between the least and the greatest.
-            weights.far[j] = keep(arriving / (floored2 * far2).sqrt());
+            weights.far[j] = keep(arriving / (typical2 + cosine * section * HALF_SPACE));
             weights.near[j] = weights.far[j];
         }
     }
@@ -200,8 +213,7 @@ fn classic<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) ->
             weights.near[j] = keep(arriving / larger(near2, NEAREST * r2));
             weights.far[j] = keep(arriving / far2);
         } else {
-            // The source's least distance, half the diagonal, in its unit.
-            weights.far[j] = keep(arriving / larger(d2, r2));
+            weights.far[j] = keep(arriving / larger(d2, HALF_RADIUS2 * r2));
             weights.near[j] = weights.far[j];
         }
     }

@@ -36,6 +36,8 @@ pub(super) struct Node<const N: usize> {
     pub(super) cut: [f32; N],
     /// By how much emission grows with the cosine above `cut`, until it is full.
     pub(super) gain: [f32; N],
+    /// Emission averaged over all directions, as a share of the peak.
+    pub(super) mean: [f32; N],
     /// Sum of the luminances of the peak intensities, in cd; 0 of an empty slot.
     pub(super) peak: [f32; N],
     link: [u32; N],
@@ -58,6 +60,7 @@ impl<const N: usize> Node<N> {
             // Beyond any cosine: an empty slot is rejected as one that shines nowhere.
             cut: [2.0; N],
             gain: [0.0; N],
+            mean: [0.0; N],
             peak: [0.0; N],
             link: [0; N],
             first,
@@ -81,6 +84,8 @@ impl<const N: usize> Node<N> {
         let full: f64 = items.iter().map(|item| f64::from(item.full) * f64::from(item.peak)).sum();
         self.cut[j] = bounds.cut;
         self.gain[j] = 1.0 / (((full / bounds.peak) as f32) - bounds.cut).max(f32::EPSILON);
+        let mean: f64 = items.iter().map(|item| f64::from(item.mean_emission()) * f64::from(item.peak)).sum();
+        self.mean[j] = (mean / bounds.peak) as f32;
         self.peak[j] = (bounds.peak as f32).min(f32::MAX);
         if let [item] = items {
             self.link[j] = LIGHT | item.light;

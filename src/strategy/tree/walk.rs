@@ -13,10 +13,10 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::tally::Tally;
 
 /// Least share of a slot that weighs anything: no light is lost to rounding beside one 10^12 times as strong.
-const LEAST_SHARE: f64 = 1.0 / 1_073_741_824.0;
+pub(in crate::strategy) const LEAST_SHARE: f64 = 1.0 / 1_073_741_824.0;
 
 /// A number whose slot had this probability or less has no digits to spare.
-const USED_UP: f64 = 1.0 / 65_536.0;
+pub(in crate::strategy) const USED_UP: f64 = 1.0 / 65_536.0;
 
 /// Slots whose shares are remembered, in nodes.
 const REMEMBERED: usize = 4096;
@@ -244,10 +244,10 @@ impl<const N: usize> Tree<N> {
         }
     }
 
-    /// The directional lights that add something at the receiver that was arrived at.
-    pub(in crate::strategy) fn directional(&self, memory: &Memory<N>) -> impl Iterator<Item = LightId> {
-        let lights = self.directional.iter().enumerate();
-        lights.filter(|(i, _)| memory.directional.pmf(*i) > 0.0).map(|(_, light)| light.light)
+    /// The directional lights that add something at the receiver that was arrived at, with what they add, in lx.
+    pub(in crate::strategy) fn directional(&self, memory: &Memory<N>) -> impl Iterator<Item = (LightId, f32)> {
+        let weight = |i| (memory.directional.pmf(i) * memory.directional.total()) as f32;
+        self.directional.iter().enumerate().map(move |(i, light)| (light.light, weight(i))).filter(|(_, w)| *w > 0.0)
     }
 
     /// Probability that a directional light is chosen, not one of the tree.
