@@ -49,7 +49,7 @@ fn it_errs_least_of_all_that_pick_one_light() {
     let stage = stage(sixteen());
     let mse = |name: &str| Runs::new(&format!("{name}points=random"), &stage, 8, 4).mse();
     let oracle = mse("oracle:");
-    for name in ["intensity:", "power:", "uniform:", "resampled:m=16,"] {
+    for name in ["intensity:", "power:", "uniform:", "resampled:from=power,m=16,"] {
         let other = mse(name);
         println!("{name} {:.2} x oracle", other / oracle);
         assert!(other > oracle, "{name} {other} below {oracle}");
