@@ -6,7 +6,12 @@ mod common;
 #[path = "common/runs.rs"]
 mod runs;
 
-use citylights::strategy::registry::parse;
+use citylights::measure::compare::{Options as Comparison, compare};
+use citylights::measure::observer::Unobserved;
+use citylights::measure::plan::Budget;
+use citylights::record::Claim;
+use citylights::record::store::RowWriter;
+use citylights::strategy::registry::{parse, parse_list};
 use citylights::verify::{Options, Truth, Verifier};
 use common::{expected, ground, point, sixteen, stage};
 use glam::Vec3;
@@ -49,9 +54,37 @@ fn it_errs_least_of_all_that_pick_one_light() {
     let stage = stage(sixteen());
     let mse = |name: &str| Runs::new(&format!("{name}points=random"), &stage, 8, 4).mse();
     let oracle = mse("oracle:");
-    for name in ["intensity:", "power:", "uniform:", "resampled:m=16,"] {
+    for name in ["intensity:", "power:", "uniform:", "resampled:from=power,m=16,"] {
         let other = mse(name);
         println!("{name} {:.2} x oracle", other / oracle);
         assert!(other > oracle, "{name} {other} below {oracle}");
     }
+}
+
+#[test]
+fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
+    let stage = stage(sixteen());
+    let folder = tempfile::tempdir().expect("a folder");
+    let strategies = parse_list("all,power,oracle,intensity,restir").expect("a list");
+    let options = Comparison {
+        strategies: &strategies,
+        budget: Budget { usual_passes: 16, most_passes: 64, seconds: 5.0 },
+        repeats: 4,
+        seed: 1,
+        threads: 2,
+        cache: folder.path(),
+        folder: folder.path(),
+    };
+    let mut writer = RowWriter::create(folder.path()).expect("begun");
+    let (record, rows) = compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
+    let of = |name: &str| record.summaries.iter().find(|s| s.strategy == name).expect(name);
+    let [power, intensity, restir] = ["power", "intensity", "restir"].map(|name| of(name).times_oracle.expect(name));
+    println!("x oracle: power {power:.1}, intensity {intensity:.2}, restir {restir:.2}");
+    assert!(power > 3.0 * intensity && intensity > 1.0 && restir < power, "{power}, {intensity}, {restir}");
+    let oracle = of("oracle");
+    assert!(oracle.claim == Claim::Oracle && oracle.times_oracle == Some(1.0), "{oracle:?}");
+    assert!(oracle.cpu_s.is_nan() && oracle.variance_seconds.is_nan() && oracle.counts.choosing_rays > 0, "{oracle:?}");
+    assert!(oracle.receivers.is_some_and(|n| n <= 256) && of("power").receivers.is_none());
+    assert!(rows.iter().all(|row| row.strategy != "oracle"), "the oracle is not timed");
+    assert_eq!(of("all").times_oracle, None);
 }

@@ -16,7 +16,9 @@ fn resampling_is_unbiased_over_any_unbiased_strategy() {
     let stage = stage(sixteen());
     for name in [
         "resampled",
-        "resampled:m=1",
+        "resampled:from=power,m=16",
+        "resampled:from=power,m=1",
+        "resampled:from=light-tree:arity=2,m=3,visibility=on",
         "resampled:from=uniform,m=5,visibility=on",
         "resampled:from=uniform:picks=3,m=2,picks=2",
         "resampled:from=intensity,m=4,visibility=on,picks=3,points=sobol",
@@ -56,7 +58,8 @@ fn one_candidate_of_one_pick_is_that_pick() {
     parts.lights.truncate(10);
     let stage = stage(parts);
     // Lights without extent, so that no number is drawn but the one that chooses.
-    let [inner, outer] = ["power:points=random", "resampled:m=1,points=random"].map(|name| image(name, &stage, 3));
+    let [inner, outer] =
+        ["power:points=random", "resampled:from=power,m=1,points=random"].map(|name| image(name, &stage, 3));
     let differ = inner.iter().zip(&outer).filter(|(a, b)| (**a - **b).length() > 1e-6 * a.length()).count();
     assert!(differ == 0 && inner.iter().any(|x| x.y > 0.0), "{differ} of {} receivers differ", inner.len());
 }
@@ -65,10 +68,10 @@ fn one_candidate_of_one_pick_is_that_pick() {
 fn names_hold_the_inner_strategy_and_its_parameters() {
     let name = "resampled:from=influence-tail:picks=2;cutoff=255,m=3";
     assert_eq!(parse(name).expect("parsed").name(), name);
-    let list = parse_list("power,resampled:from=power:picks=2,m=4,uniform").expect("a list");
+    let list = parse_list("power,resampled:from=power:picks=2,m=5,uniform").expect("a list");
     let names: Vec<&str> = list.iter().map(Configured::name).collect();
-    assert_eq!(names, ["power", "resampled:from=power:picks=2,m=4", "uniform"]);
-    assert_eq!(parse("resampled:from=power,m=16").expect("the defaults").name(), "resampled");
+    assert_eq!(names, ["power", "resampled:from=power:picks=2,m=5", "uniform"]);
+    assert_eq!(parse("resampled:from=light-tree,m=4").expect("the defaults").name(), "resampled");
 }
 
 #[test]

@@ -19,8 +19,8 @@ use runs::Runs;
 fn pairwise_reuse_is_unbiased() {
     let stage = stage(sixteen());
     for name in [
-        "restir:m=4",
-        "restir:m=4,visibility=off",
+        "restir",
+        "restir:from=power,visibility=off",
         "restir:from=uniform,m=2,neighbours=5,radius=8",
         "restir:from=uniform:picks=2,m=1,neighbours=1,radius=3,visibility=off",
     ] {
@@ -31,7 +31,7 @@ fn pairwise_reuse_is_unbiased() {
 #[test]
 fn reuse_by_one_over_m_is_dark_at_edges_and_shadows() {
     let stage = stage(sixteen());
-    let name = "restir:combine=1/M,m=4";
+    let name = "restir:from=power,combine=1/M";
     let runs = Runs::new(name, &stage, 64, 16);
     let (energy, (worst, limit)) = (runs.energy(), runs.worst());
     let half = energy.half_width(0.99);

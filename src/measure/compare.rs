@@ -94,6 +94,13 @@ pub fn compare(
     if left_out > 0 {
         notes.push(format!("{left_out} lights face away from every visible point and were left out"));
     }
+    let whole_frames = options.strategies.iter().zip(&pilots).filter(|(_, pilot)| {
+        let pilot = pilot.as_ref().and_then(|p| p.as_ref().ok());
+        target.subset && pilot.is_some_and(|pilot| pilot.whole_frames)
+    });
+    for (strategy, _) in whole_frames {
+        notes.push(format!("`{}` saw no more of its frame than the receivers measured", strategy.name()));
+    }
     Ok((record(&target, file, &reference, notes, summaries), comparison.rows))
 }
 

@@ -46,6 +46,8 @@ pub struct Pilot {
     energy_variance: f64,
     /// What became of the samples.
     pub counts: Counts,
+    /// Whether the strategy works on whole frames.
+    pub whole_frames: bool,
 }
 
 /// Receivers of a pilot.
@@ -108,6 +110,7 @@ impl Pilot {
             spread: strategy.points() != Points::Random,
             energy_variance,
             counts,
+            whole_frames: whole,
         })
     }
 
@@ -155,6 +158,7 @@ mod tests {
             spread: false,
             energy_variance: 0.0,
             counts: Counts::default(),
+            whole_frames: false,
         };
         assert_eq!(pilot.ladder(Budget { usual_passes: 20, most_passes: 20, seconds: 100.0 }, 16), [1, 2, 4, 8, 16]);
         // 8 passes in 4 blocks take 0.4 + 0.8 s.

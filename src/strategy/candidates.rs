@@ -30,8 +30,8 @@ pub(super) struct Recipe {
 impl Recipe {
     /// Reads `from` and `m`.
     pub(super) fn configure(arguments: &mut Arguments) -> Result<Self> {
-        let from = arguments.strategy("from", "power", "strategy that the candidates come from")?;
-        let calls = arguments.count("m", 16, 1..=1024, "calls of that strategy for one choice")?;
+        let from = arguments.strategy("from", "light-tree", "strategy that the candidates come from")?;
+        let calls = arguments.count("m", 4, 1..=1024, "calls of that strategy for one choice")?;
         Ok(Self { from, calls })
     }
 

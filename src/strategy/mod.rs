@@ -8,6 +8,9 @@
 //! E[ sum over picks of l of weight * g(uv) ] = integral of g      (g = 1: the weights of l sum to 1 on average)
 //! ```
 //!
+//! A strategy that tests points before it picks one may leave out those that add nothing there: the identity then holds
+//! for every g that is 0 at them, which is all that shading asks for.
+//!
 //! A strategy that breaks it by design says so in its [`Claim`].
 //!
 //! Adding one takes a file here and a line in [`registry`].

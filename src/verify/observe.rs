@@ -146,7 +146,7 @@ impl Site<'_> {
     fn take(&mut self, subject: &Subject<'_, '_>, buffer: &PickBuffer, rays: &mut u64) {
         let stage = subject.stage();
         let lights = stage.scene().lights();
-        let batch = &mut self.current;
+        let (batch, total) = (&mut self.current, self.truth.total());
         for pick in buffer.calls().flatten() {
             let (id, weight) = (pick.light as usize, f64::from(pick.weight));
             self.seen[id] = true;
@@ -159,8 +159,11 @@ impl Site<'_> {
             if self.steady.holds(id) {
                 batch.frequent += weight * value;
             }
-            let unit = weight * f64::from(self.counts[id]);
-            if self.told {
+            if !self.told {
+                self.pool.add(id, weight * value / total);
+            } else {
+                let unit = weight * f64::from(self.counts[id]);
+                self.pool.add(id, unit);
                 if (unit - 1.0).abs() > self.worst_reciprocal.0 {
                     self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
                 }
@@ -169,7 +172,6 @@ impl Site<'_> {
                     batch.excess += unit - 1.0;
                 }
             }
-            self.pool.add(id, unit);
         }
         batch.picks += buffer.len() as f64;
     }
@@ -220,7 +222,7 @@ pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
                 at: *at,
                 calls,
                 batches,
-                pool: Pool::new(truth, &counts, draws),
+                pool: Pool::new(truth, &counts, told, draws),
                 steady: Steady::new(truth, &counts, told, calls, draws),
                 seen: counts.iter().map(|&count| !told && count > 0.0).collect(),
                 truth,

@@ -8,13 +8,19 @@ use crate::base::statistics::Moments;
 /// nothing to test.
 const BIN: f64 = 30.0;
 
+/// Where expected counts are not told, lights that add less than this share of the radiance together share a bin: the
+/// weight of a light that others stand in the light of is rarely great, and a mean of few such hits tells nothing.
+const SHARE: f64 = 0.125;
+
 /// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
 /// the estimate, on both sides of the comparison; the other checks still hold them.
 const SKEWNESS: f64 = 0.25;
 
 /// The lights that add something and can be picked, in bins.
 ///
-/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1.
+/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where expected counts
+/// are not told it is the sum of weight times what the point adds, as a share of the radiance: such a sampler may choose
+/// its points too, and weigh only those that add anything.
 pub(super) struct Pool {
     bins: Vec<Bin>,
     /// Of each light; `u32::MAX` is none.
@@ -27,6 +33,8 @@ pub(super) struct Bin {
     /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count.
     pub(super) expected: f64,
     pub(super) chance: f64,
+    /// Variance of `expected` itself, where the truth is sampled.
+    pub(super) noise: f64,
     /// One of the lights.
     pub(super) first: u32,
     /// The sum over the current batch; sum and sum of squares over batches.
@@ -46,30 +54,41 @@ impl Bin {
 }
 
 impl Pool {
-    /// Bins of lights sorted by `counts`, the expected picks a call; `draws` calls are made.
-    pub(super) fn new(truth: &Truth, counts: &[f32], draws: f64) -> Self {
-        let count = |light: usize| f64::from(counts[light]);
+    /// Bins of the lights that have `counts`, expected picks a call, sorted by those where they are `told`; `draws` calls
+    /// are made.
+    pub(super) fn new(truth: &Truth, counts: &[f32], told: bool, draws: f64) -> Self {
+        let total = truth.total();
+        let expected = |i: usize| if told { f64::from(counts[i]) } else { truth.lights()[i] / total };
+        let chance = |expected: f64| if told { (1.0 - expected).max(0.0) } else { 1.0 };
+        let full = if told { BIN / draws } else { SHARE };
         let mut order: Vec<usize> = (0..counts.len()).filter(|&i| truth.adds(i) && counts[i] > 0.0).collect();
-        order.sort_by(|&a, &b| counts[a].total_cmp(&counts[b]));
+        order.sort_by(|&a, &b| expected(a).total_cmp(&expected(b)));
         let mut bins: Vec<Bin> = Vec::new();
         let mut bin_of = vec![u32::MAX; counts.len()];
-        let mut left: f64 = order.iter().map(|&light| count(light)).sum();
-        if left * draws < BIN {
+        let mut left: f64 = order.iter().map(|&light| expected(light)).sum();
+        if left < full {
             order.clear();
         }
         for light in order {
-            let full_enough = bins.last().is_none_or(|bin| bin.expected * draws >= BIN);
+            let full_enough = bins.last().is_none_or(|bin| bin.expected >= full);
             // What would not fill another joins the last.
-            if bins.is_empty() || full_enough && left * draws >= BIN {
+            if bins.is_empty() || full_enough && left >= full {
                 bins.push(Bin { first: light as u32, ..Bin::default() });
             }
-            left -= count(light);
+            let more = expected(light);
+            left -= more;
             let at = bins.len() - 1;
-            bins[at].expected += count(light);
-            bins[at].chance += count(light) * (1.0 - count(light)).max(0.0);
+            bins[at].expected += more;
+            bins[at].chance += more * chance(more);
             bin_of[light] = at as u32;
         }
-        bins.iter_mut().for_each(|bin| bin.chance /= bin.expected);
+        for (at, bin) in (0u32..).zip(&mut bins) {
+            bin.chance /= bin.expected;
+            if !told {
+                let truth = truth.sum(|light| bin_of[light] == at);
+                bin.noise = truth.variance / truth.n as f64 / (total * total);
+            }
+        }
         Self { bins, bin_of }
     }
 
@@ -77,7 +96,7 @@ impl Pool {
         &self.bins
     }
 
-    /// Adds a pick of a light: its weight times its expected count.
+    /// Adds a pick of a light: its part of the statistic.
     pub(super) fn add(&mut self, light: usize, unit: f64) {
         if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
             bin.batch += unit;

@@ -1,4 +1,5 @@
-//! Do the weights of each light sum to 1 on average?
+//! Do the weights of each light sum to 1 on average? If a sampler cannot tell how often it picks: do they sum to what the
+//! light adds, each times what its point adds?
 
 use super::observe::{PLENTY, Site, freedom};
 use super::{Check, Options};
@@ -28,7 +29,7 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
             // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
             let skewness = if picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
-            let z = (found.mean - bin.expected) / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
+            let z = (found.mean - bin.expected) / (variance + bin.noise + (ROUNDING * bin.expected).powi(2)).sqrt();
             // Johnson, JASA 73, 1978: a mean's statistic without its skewness, to first order.
             let z = z - skewness / 6.0 * (z * z - 1.0);
             if z.is_nan() || z.abs() > worst.0 {
