@@ -157,7 +157,7 @@ impl<'a> Verifier<'a> {
         checks.extend([contract::picks(&sites, &self.options), contract::reciprocal(&sites)]);
         match claim {
             Claim::Unbiased => {
-                checks.push(coverage::coverage(self.stage.scene().lights(), &sites));
+                checks.push(coverage::coverage(self.stage.scene(), &sites));
                 checks.extend(weights::weights(&sites, &self.options));
                 checks.extend(estimate::estimate(&sites, &self.options));
             }

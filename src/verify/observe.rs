@@ -1,8 +1,8 @@
 //! What does a sampler do, seen from outside: many draws at a few receivers.
 //!
 //! Each batch is an independent run, so that batches may be compared whatever the numbers of the passes within one have to
-//! do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others, shows it:
-//! any numbers that do not depend on the draws may take the place of expected counts in the tests.
+//! do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others, shows
+//! which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
 
 use super::Subject;
 use super::pool::{Bin, Pool, Steady};
@@ -74,6 +74,11 @@ impl Site<'_> {
         self.told.then_some(&self.counts)
     }
 
+    /// Whether a light is expected to be picked, or was often enough to tell.
+    pub(super) fn often(&self, light: usize) -> bool {
+        self.counts[light] > 0.0
+    }
+
     /// Moments over the batches of picks a call.
     pub(super) fn picks(&self) -> Moments {
         self.moments(|batch| batch.picks)
@@ -133,10 +138,10 @@ impl Site<'_> {
     /// at least; by luck, batches of even numbers may all show the same.
     pub(super) fn variance(&self, found: Moments, wanted: f64, chance: f64) -> f64 {
         let mut variance = found.variance / found.n as f64;
-        if wanted * self.draws() < PLENTY {
-            variance = variance.max(wanted * chance / self.draws());
-        }
         if self.told {
+            if wanted * self.draws() < PLENTY {
+                variance = variance.max(wanted * chance / self.draws());
+            }
             let calls = f64::from(self.calls);
             variance = variance.max(toss(wanted * calls) / (calls * calls * f64::from(self.batches)));
         }
@@ -159,8 +164,8 @@ impl Site<'_> {
             if self.steady.holds(id) {
                 batch.frequent += weight * value;
             }
-            let unit = weight * f64::from(self.counts[id]);
             if self.told {
+                let unit = weight * f64::from(self.counts[id]);
                 if (unit - 1.0).abs() > self.worst_reciprocal.0 {
                     self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
                 }
@@ -169,7 +174,7 @@ impl Site<'_> {
                     batch.excess += unit - 1.0;
                 }
             }
-            self.pool.add(id, unit);
+            self.pool.add(id, weight);
         }
         batch.picks += buffer.len() as f64;
     }
@@ -220,7 +225,7 @@ pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
                 at: *at,
                 calls,
                 batches,
-                pool: Pool::new(truth, &counts, draws),
+                pool: Pool::new(truth, &counts, told, draws),
                 steady: Steady::new(truth, &counts, told, calls, draws),
                 seen: counts.iter().map(|&count| !told && count > 0.0).collect(),
                 truth,

@@ -12,19 +12,24 @@ const BIN: f64 = 30.0;
 /// the estimate, on both sides of the comparison; the other checks still hold them.
 const SKEWNESS: f64 = 0.25;
 
+/// Parts of the radiance where expected counts cannot be told, lights sorted by what they add.
+const PARTS: f64 = 8.0;
+
 /// The lights that add something and can be picked, in bins.
 ///
-/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1.
+/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where counts cannot be
+/// told it is the sum of weight times contribution. Resampling gives a light that is dim beside others a great weight on
+/// the rare occasions that it wins against them; only together do the dim ones win often enough to be tested.
 pub(super) struct Pool {
     bins: Vec<Bin>,
-    /// Of each light; `u32::MAX` is none.
-    bin_of: Vec<u32>,
+    /// What a pick of each light adds to its bin when its weight is 1, and its bin; `u32::MAX` is none.
+    lights: Vec<(f64, u32)>,
 }
 
 /// Lights that are tested together.
 #[derive(Clone, Default)]
 pub(super) struct Bin {
-    /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count.
+    /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count, if told.
     pub(super) expected: f64,
     pub(super) chance: f64,
     /// One of the lights.
@@ -46,41 +51,43 @@ impl Bin {
 }
 
 impl Pool {
-    /// Bins of lights sorted by `counts`, the expected picks a call; `draws` calls are made.
-    pub(super) fn new(truth: &Truth, counts: &[f32], draws: f64) -> Self {
-        let count = |light: usize| f64::from(counts[light]);
+    /// Bins for `draws` calls; `counts` are the expected picks a call, `told` by the sampler or seen in a pilot run.
+    pub(super) fn new(truth: &Truth, counts: &[f32], told: bool, draws: f64) -> Self {
+        let share = |i: usize| if told { f64::from(counts[i]) } else { truth.lights()[i] };
         let mut order: Vec<usize> = (0..counts.len()).filter(|&i| truth.adds(i) && counts[i] > 0.0).collect();
-        order.sort_by(|&a, &b| counts[a].total_cmp(&counts[b]));
-        let mut bins: Vec<Bin> = Vec::new();
-        let mut bin_of = vec![u32::MAX; counts.len()];
-        let mut left: f64 = order.iter().map(|&light| count(light)).sum();
-        if left * draws < BIN {
+        order.sort_by(|&a, &b| share(a).total_cmp(&share(b)));
+        let mut left: f64 = order.iter().map(|&light| share(light)).sum();
+        let full = if told { BIN / draws } else { left / PARTS };
+        if left < full {
             order.clear();
         }
+        let mut bins: Vec<Bin> = Vec::new();
+        let mut lights = vec![(0.0, u32::MAX); counts.len()];
         for light in order {
-            let full_enough = bins.last().is_none_or(|bin| bin.expected * draws >= BIN);
+            let full_enough = bins.last().is_none_or(|bin| bin.expected >= full);
             // What would not fill another joins the last.
-            if bins.is_empty() || full_enough && left * draws >= BIN {
+            if bins.is_empty() || full_enough && left >= full {
                 bins.push(Bin { first: light as u32, ..Bin::default() });
             }
-            left -= count(light);
+            left -= share(light);
             let at = bins.len() - 1;
-            bins[at].expected += count(light);
-            bins[at].chance += count(light) * (1.0 - count(light)).max(0.0);
-            bin_of[light] = at as u32;
+            bins[at].expected += share(light);
+            bins[at].chance += share(light) * (1.0 - f64::from(counts[light])).max(0.0);
+            lights[light] = (share(light), at as u32);
         }
         bins.iter_mut().for_each(|bin| bin.chance /= bin.expected);
-        Self { bins, bin_of }
+        Self { bins, lights }
     }
 
     pub(super) fn bins(&self) -> &[Bin] {
         &self.bins
     }
 
-    /// Adds a pick of a light: its weight times its expected count.
-    pub(super) fn add(&mut self, light: usize, unit: f64) {
-        if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
-            bin.batch += unit;
+    /// Adds a pick of a light.
+    pub(super) fn add(&mut self, light: usize, weight: f64) {
+        let (share, bin) = self.lights[light];
+        if let Some(bin) = self.bins.get_mut(bin as usize) {
+            bin.batch += weight * share;
         }
     }
 

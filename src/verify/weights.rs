@@ -27,7 +27,7 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
             let variance = site.variance(found, bin.expected, bin.chance);
             // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
-            let skewness = if picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
+            let skewness = if site.expected().is_some() && picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
             let z = (found.mean - bin.expected) / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
             // Johnson, JASA 73, 1978: a mean's statistic without its skewness, to first order.
             let z = z - skewness / 6.0 * (z * z - 1.0);
