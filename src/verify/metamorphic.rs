@@ -67,8 +67,9 @@ enum Change {
     Hidden,
 }
 
-/// Most pixels of a film here: the view is built anew for every change.
-const PIXELS: u32 = 64 * 36;
+/// Enough pixels of a film for checks: a view is built anew for every change, and a frame-wide sampler looks at all of it in
+/// every pass.
+pub const PIXELS: u32 = 64 * 36;
 
 /// A scene and its changed copies, made ready.
 pub struct Copies {
@@ -80,10 +81,7 @@ impl Copies {
     /// Changes a scene in every way.
     pub fn new(scene: &Scene, offset: Offset) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
-        let (width, height) = parts.camera.resolution();
-        let shrink = (f64::from(PIXELS) / (f64::from(width) * f64::from(height))).sqrt().min(1.0);
-        let shrunk = |pixels: u32| ((f64::from(pixels) * shrink) as u32).max(1);
-        parts.camera = parts.camera.resized(shrunk(width), shrunk(height));
+        parts.camera = parts.camera.shrunk(PIXELS);
         let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset));
         let whole = ready(parts.clone())?;
         let changed = CHANGES.iter().map(|(_, change, _)| ready(change.of(parts.clone(), &whole)));

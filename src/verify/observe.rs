@@ -7,7 +7,7 @@
 use super::Subject;
 use super::pool::{Bin, Pool, Steady};
 use super::truth::{Truth, grey};
-use crate::base::statistics::Moments;
+use crate::base::statistics::{Moments, skewness, unskewed};
 use crate::render::exact::shadowed;
 use crate::scene::receiver::Receiver;
 use crate::strategy::erased::{Frame, PickBuffer, blocks};
@@ -94,9 +94,9 @@ impl Site<'_> {
         self.moments(|batch| batch.excess)
     }
 
-    /// Of the estimate from lights that are hit often enough.
-    pub(super) fn frequent(&self) -> Moments {
-        self.moments(|batch| batch.frequent)
+    /// The estimate of each batch from lights that are hit often enough.
+    pub(super) fn frequent(&self) -> Vec<f64> {
+        self.finished.iter().map(|batch| batch.frequent).collect()
     }
 
     fn moments(&self, of: fn(&Batch) -> f64) -> Moments {
@@ -120,7 +120,13 @@ impl Site<'_> {
 
     /// Of a bin's batches, a call.
     pub(super) fn found(&self, bin: &Bin) -> Moments {
-        bin.moments(self.batches, self.calls)
+        Moments::of(bin.batches().map(|sum| sum / f64::from(self.calls)))
+    }
+
+    /// A t statistic of batches without their skewness, where that must be measured: the model of picks with told counts
+    /// knows it better.
+    pub(super) fn unskewed(&self, t: f64, batches: impl IntoIterator<Item = f64> + Clone) -> f64 {
+        if self.told { t } else { unskewed(t, skewness(batches), self.batches as usize) }
     }
 
     /// Variance, least variance and third central moment that the mean of the estimate from frequent lights should have.

@@ -2,7 +2,6 @@
 
 use super::observe::toss;
 use super::truth::Truth;
-use crate::base::statistics::Moments;
 
 /// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there is
 /// nothing to test.
@@ -12,8 +11,10 @@ const BIN: f64 = 30.0;
 /// the estimate, on both sides of the comparison; the other checks still hold them.
 const SKEWNESS: f64 = 0.25;
 
-/// Parts of the radiance where expected counts cannot be told, lights sorted by what they add.
+/// Parts of the radiance where expected counts cannot be told, lights sorted by what they add, and picks of each in the
+/// pilot run: their weights differ, and few would not show by how much.
 const PARTS: f64 = 8.0;
+const PART: f64 = 200.0;
 
 /// The lights that add something and can be picked, in bins.
 ///
@@ -34,19 +35,17 @@ pub(super) struct Bin {
     pub(super) chance: f64,
     /// One of the lights.
     pub(super) first: u32,
-    /// The sum over the current batch; sum and sum of squares over batches.
+    /// Expected picks in all draws.
+    picks: f64,
+    /// The sum over the current batch, and those of the batches before.
     batch: f64,
-    sum: f64,
-    squares: f64,
+    finished: Vec<f64>,
 }
 
 impl Bin {
-    /// The moments of the batches' values divided by the calls of a batch.
-    pub(super) fn moments(&self, batches: u32, calls: u32) -> Moments {
-        let (n, calls) = (f64::from(batches), f64::from(calls));
-        let mean = self.sum / n;
-        let variance = ((self.squares - n * mean * mean) / (n - 1.0).max(1.0)).max(0.0);
-        Moments { n: batches as usize, mean: mean / calls, variance: variance / (calls * calls) }
+    /// The sums of the batches.
+    pub(super) fn batches(&self) -> impl Iterator<Item = f64> + Clone {
+        self.finished.iter().copied()
     }
 }
 
@@ -57,20 +56,24 @@ impl Pool {
         let mut order: Vec<usize> = (0..counts.len()).filter(|&i| truth.adds(i) && counts[i] > 0.0).collect();
         order.sort_by(|&a, &b| share(a).total_cmp(&share(b)));
         let mut left: f64 = order.iter().map(|&light| share(light)).sum();
-        let full = if told { BIN / draws } else { left / PARTS };
-        if left < full {
+        // What a bin needs of shares and of picks.
+        let (part, picks) = if told { (0.0, BIN) } else { (left / PARTS, PART) };
+        let mut picks_left = order.iter().map(|&light| f64::from(counts[light]) * draws).sum::<f64>();
+        if picks_left < picks {
             order.clear();
         }
         let mut bins: Vec<Bin> = Vec::new();
         let mut lights = vec![(0.0, u32::MAX); counts.len()];
         for light in order {
-            let full_enough = bins.last().is_none_or(|bin| bin.expected >= full);
+            let full = bins.last().is_none_or(|bin| bin.expected >= part && bin.picks >= picks);
             // What would not fill another joins the last.
-            if bins.is_empty() || full_enough && left >= full {
+            if bins.is_empty() || full && left >= part && picks_left >= picks {
                 bins.push(Bin { first: light as u32, ..Bin::default() });
             }
-            left -= share(light);
+            let expected = f64::from(counts[light]) * draws;
+            (left, picks_left) = (left - share(light), picks_left - expected);
             let at = bins.len() - 1;
+            bins[at].picks += expected;
             bins[at].expected += share(light);
             bins[at].chance += share(light) * (1.0 - f64::from(counts[light])).max(0.0);
             lights[light] = (share(light), at as u32);
@@ -94,9 +97,7 @@ impl Pool {
     /// Ends a batch.
     pub(super) fn close(&mut self) {
         for bin in &mut self.bins {
-            bin.sum += bin.batch;
-            bin.squares += bin.batch * bin.batch;
-            bin.batch = 0.0;
+            bin.finished.push(std::mem::take(&mut bin.batch));
         }
     }
 }
