@@ -49,6 +49,21 @@ impl Moments {
     }
 }
 
+/// The skewness of a list of numbers; 0 of fewer than three or of equal ones.
+pub fn skewness(values: impl IntoIterator<Item = f64> + Clone) -> f64 {
+    let Moments { n, mean, variance } = Moments::of(values.clone());
+    let cubes: f64 = values.into_iter().map(|v| (v - mean).powi(3)).sum();
+    if n < 3 || variance <= 0.0 { 0.0 } else { cubes / n as f64 / variance.powf(1.5) }
+}
+
+/// A t statistic of `n` numbers freed of their skewness, to first order: increasing in t.
+///
+/// Source: Hall, J. R. Stat. Soc. B 54(1), 1992, for a mean divided by its measured error.
+pub fn unskewed(t: f64, skewness: f64, n: usize) -> f64 {
+    let a = skewness / (n.max(1) as f64).sqrt();
+    t + a / 3.0 * t * t + a * a / 27.0 * t * t * t + a / 6.0
+}
+
 /// The value below which Student's t with `freedom` degrees of freedom lies with probability `p`.
 #[cfg(feature = "measure")]
 pub fn student_quantile(p: f64, freedom: usize) -> f64 {
@@ -92,6 +107,23 @@ mod tests {
         let m = Moments::of([1.0, 2.0, 3.0, 4.0]);
         assert!((m.mean - 2.5).abs() < 1e-15 && (m.variance - 5.0 / 3.0).abs() < 1e-15);
         assert!((quantile(&[1.0, 2.0, 3.0, 4.0], 0.5) - 2.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn skewness_is_measured_and_taken_out_of_t() {
+        // Exponential numbers have skewness 2; the t of 40 of them is below -2.02 oftener than 2.5 % of the time.
+        let mut stream = crate::base::random::Stream::keyed(&[8]);
+        let mut draw = |n: usize| (0..n).map(|_| -(1.0 - stream.uniform64()).ln()).collect::<Vec<f64>>();
+        assert!((skewness(draw(200_000)) - 2.0).abs() < 0.15);
+        let mut low = [0u32; 2];
+        for _ in 0..20_000 {
+            let values = draw(40);
+            let m = Moments::of(values.iter().copied());
+            let t = (m.mean - 1.0) / m.standard_error();
+            low[0] += u32::from(t < -2.023);
+            low[1] += u32::from(unskewed(t, skewness(values.iter().copied()), 40) < -2.023);
+        }
+        assert!(low[0] > 1_000 && low[1] < 900, "{low:?} of 20000 below the 2.5 % quantile, seed 8");
     }
 
     #[cfg(feature = "measure")]

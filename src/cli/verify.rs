@@ -6,10 +6,10 @@ use super::{Outcome, print, say};
 use crate::base::error::{Error, Result};
 use crate::base::statistics::sidak;
 use crate::measure::observer::Observer;
-use crate::scene::{Scene, small};
+use crate::scene::{Parts, Scene, small};
 use crate::strategy::Claim;
 use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
-use crate::verify::metamorphic::{self, Copies, Metamorphic};
+use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
 use crate::verify::{BY_CHANCE, Check, Options, Verifier};
 use clap::Args;
 use rayon::prelude::*;
@@ -100,7 +100,9 @@ fn verify(
     let name = scene.name().to_owned();
     watch.begin("strategies", strategies.len() as u64);
     let copies = Copies::new(&scene, arguments.scene_options.offset())?;
-    let stage = arguments.scene_options.prepare(scene);
+    let parts = scene.parts();
+    let camera = parts.camera.shrunk(PIXELS);
+    let stage = arguments.scene_options.prepare(Scene::new(Parts { camera, ..parts })?);
     let verifier = Verifier::new(&stage, options);
     // The changes are many, and each is looked at alone.
     let fewer = Options { receivers: options.receivers.min(8), draws: options.draws / 4, batches: 50, ..options };

@@ -2,6 +2,7 @@
 
 use super::clock::{Spent, timed};
 use super::films::Films;
+use super::gate::Gate;
 use super::observer::Observer;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
@@ -145,11 +146,13 @@ fn record(
 fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Result<Pilot>>>> {
     let few = target.thinned(plan::RECEIVERS);
     let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
-    watch.begin("pilots", options.strategies.len() as u64);
+    watch.begin("checks and pilots", options.strategies.len() as u64);
+    let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
     let mut pilots = Vec::new();
     for strategy in options.strategies {
         watch.check()?;
-        pilots.push((!oracle::is_oracle(strategy)).then(|| Pilot::run(target, &rough, strategy, options.seed)));
+        let pilot = || gate.pass(strategy).and_then(|()| Pilot::run(target, &rough, strategy, options.seed));
+        pilots.push((!oracle::is_oracle(strategy)).then(pilot));
         watch.advance(1);
     }
     watch.end();

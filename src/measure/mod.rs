@@ -1,6 +1,7 @@
 //! How far from the truth is each strategy, after how much time?
 //!
-//! One [`Target`](target::Target) a scene holds the receivers and the exact image. A [`Pilot`](plan::Pilot) says how far
+//! One [`Target`](target::Target) a scene holds the receivers and the exact image. A strategy must pass a `gate` of quick
+//! checks. A [`Pilot`](plan::Pilot) says how far
 //! each strategy can go within its budget. [`compare`] runs all of it, interleaved, and hands out rows as they come.
 
 pub mod clock;
@@ -8,6 +9,7 @@ pub mod compare;
 pub mod environment;
 pub mod errors;
 pub mod films;
+mod gate;
 pub mod inspect;
 pub mod observer;
 mod oracle;

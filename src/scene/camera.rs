@@ -44,9 +44,10 @@ impl Camera {
         Ok(Self { position, forward, right, down, width, height })
     }
 
-    /// The same view on a film of other pixels across and down; 1 or more of each, and no more in all than this one has.
-    pub fn resized(&self, width: u32, height: u32) -> Self {
-        debug_assert!(width > 0 && height > 0 && width * height <= self.width * self.height);
+    /// The same view on a film of at most so many pixels, 1 or more.
+    pub fn shrunk(&self, pixels: u32) -> Self {
+        let shrink = (f64::from(pixels) / (f64::from(self.width) * f64::from(self.height))).sqrt().min(1.0);
+        let [width, height] = [self.width, self.height].map(|side| ((f64::from(side) * shrink) as u32).max(1));
         let aspect = |width: u32, height: u32| f64::from(width) / f64::from(height);
         let right = self.right * (aspect(width, height) / aspect(self.width, self.height));
         Self { width, height, right, ..*self }

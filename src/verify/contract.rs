@@ -85,7 +85,7 @@ fn count_different(a: &[Vec<Pick>], b: &[Vec<Pick>]) -> usize {
 /// One thread, two threads and a split of the passes: the same bytes.
 fn threads(subject: &Subject<'_, '_>) -> Check {
     // More than one tile of 64.
-    let receivers = spread(subject.stage().receivers(), 160);
+    let receivers = spread(subject.stage().receivers(), 80);
     let plan = Plan { stage: subject.stage(), receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
     let film = |run: &dyn Fn(&mut Film)| {
         let mut film = Film::new(receivers.len());

@@ -2,38 +2,47 @@
 
 use super::Check;
 use super::observe::Site;
-use crate::scene::light::Light;
+use crate::base::colour::luminance;
+use crate::scene::Scene;
+use crate::scene::light::LightId;
 use crate::shading::importance::importance;
 
 /// The check's name.
 pub(super) const COVERAGE: &str = "coverage";
 
-/// Where expected counts cannot be told, a light must have been seen that has this share of the radiance, shadows or no
-/// shadows, in enough draws to see it a hundred times were lights picked by what they add. One that stands in the light of
-/// another may be right to wait.
+/// Where expected counts cannot be told, a light with this share of the radiance must have been seen.
 const NOTICEABLE: f64 = 0.01;
-const OFTEN: f64 = 100.0;
 
 /// Counts the lights that add something at a receiver and have no chance there.
-pub(super) fn coverage(lights: &[Light], sites: &[Site<'_>]) -> Check {
+///
+/// Where expected counts cannot be told, a light that was never seen is suspicious only if weaker ones were, seen often,
+/// however weakness is measured: by flux, by what arrives with nothing in between, by what does arrive. A right strategy
+/// may wait long for a light in the shadow of another.
+pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
+    let (lights, radius) = (scene.lights(), scene.radius());
     let mut missing = 0u64;
     let mut hypotheses = 0u64;
     let mut first = None;
     for site in sites {
         let total = site.truth.total();
-        let noticeable = NOTICEABLE.max(OFTEN / site.draws());
-        // What each light could add with nothing in between, scaled to the same sum.
-        let open: Vec<f64> = lights.iter().map(|light| f64::from(importance(light, &site.at))).collect();
-        let scale = total / open.iter().sum::<f64>();
-        for (light, value) in site.truth.lights().iter().enumerate().filter(|(i, _)| site.truth.adds(*i)) {
+        let value = |light: usize| site.truth.lights()[light];
+        let strength = |light: usize| {
+            let open = f64::from(importance(&lights[light], &site.at));
+            [f64::from(luminance(lights[light].flux(radius))), open, value(light)]
+        };
+        let weaker_seen = |light: usize| {
+            let own = strength(light);
+            (0..lights.len()).any(|i| site.often(i) && strength(i).iter().zip(own).all(|(its, own)| *its <= own))
+        };
+        for light in (0..lights.len()).filter(|&light| site.truth.adds(light)) {
             hypotheses += 1;
             let covered = match site.expected() {
                 Some(counts) => counts[light] > 0.0,
-                None => site.seen[light] || value.min(open[light] * scale) < noticeable * total,
+                None => site.seen[light] || value(light) < NOTICEABLE * total || !weaker_seen(light),
             };
             if !covered {
                 missing += 1;
-                first.get_or_insert((light, site.at.pixel, value / total));
+                first.get_or_insert((light as LightId, site.at.pixel, value(light) / total));
             }
         }
     }

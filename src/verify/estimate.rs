@@ -3,7 +3,7 @@
 use super::observe::{Batch, Site, freedom};
 use super::weights::ROUNDING;
 use super::{Check, Options};
-use crate::base::statistics::{Moments, sidak, student_p, student_quantile};
+use crate::base::statistics::{Moments, sidak, skewness, student_p, student_quantile, unskewed};
 
 /// The checks' names.
 pub(super) const ESTIMATE: &str = "estimate";
@@ -15,7 +15,9 @@ struct Difference {
     value: f64,
     variance: f64,
     freedom: f64,
+    /// Of the mean, by the model; and of a batch, as measured where there is no model, with the number of batches.
     skewness: f64,
+    measured: (f64, usize),
 }
 
 /// From this skewness of a mean on, a measured variance may be luck: the model's is the least.
@@ -28,7 +30,8 @@ impl Difference {
     /// The variance of the model is that of independent picks. Numbers spread evenly over passes leave less, but nothing
     /// is gained for lights so rare that they make a mean lopsided; where it is, the test is as strong as with independent
     /// picks.
-    fn of(found: Moments, wanted: Moments, model: [f64; 3]) -> Self {
+    fn of(batches: &[f64], wanted: Moments, model: [f64; 3], told: bool) -> Self {
+        let found = Moments::of(batches.iter().copied());
         let [model_variance, least, third] = model;
         let mut own = (found.variance / found.n as f64).max(least);
         let lopsided = third.abs() > LOPSIDED * model_variance.powf(1.5);
@@ -40,8 +43,9 @@ impl Difference {
         let variance = own + reference + (ROUNDING * wanted.mean).powi(2);
         let shares = own * own / (found.n as f64 - 1.0) + reference * reference / (wanted.n as f64 - 1.0);
         let freedom = if shares > 0.0 { (own + reference).powi(2) / shares } else { found.n as f64 - 1.0 };
+        let measured = (if told { 0.0 } else { skewness(batches.iter().copied()) }, found.n);
         let skewness = if lopsided { third / variance.powf(1.5) } else { 0.0 };
-        Self { value: found.mean - wanted.mean, variance, freedom: freedom.max(1.0), skewness }
+        Self { value: found.mean - wanted.mean, variance, freedom: freedom.max(1.0), skewness, measured }
     }
 
     /// The t statistic without its skewness, to first order (Johnson, JASA 73, 1978).
@@ -50,7 +54,7 @@ impl Difference {
             return 0.0;
         }
         let t = self.value / self.variance.sqrt();
-        t - self.skewness / 6.0 * (t * t - 1.0)
+        unskewed(t - self.skewness / 6.0 * (t * t - 1.0), self.measured.0, self.measured.1)
     }
 
     fn p(&self) -> f64 {
@@ -70,15 +74,18 @@ pub(super) struct Distance<'a> {
 impl<'a> Distance<'a> {
     pub(super) fn new(sites: &'a [Site<'a>]) -> Self {
         let wanted: Vec<Moments> = sites.iter().map(Site::wanted).collect();
-        let each =
-            sites.iter().zip(&wanted).map(|(site, wanted)| Difference::of(site.frequent(), *wanted, site.model()));
+        let each = sites
+            .iter()
+            .zip(&wanted)
+            .map(|(site, wanted)| Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some()));
         // Receivers draw from streams of their own: their moments add.
         let sum = |of: fn(&Moments) -> f64| wanted.iter().map(of).sum::<f64>();
         let n = wanted.first().map_or(2, |wanted| wanted.n);
+        let told = sites.iter().all(|site| site.expected().is_some());
         let (covered, variance) = (sum(|wanted| wanted.mean), sum(|wanted| wanted.variance));
         let model = sites.iter().map(Site::model).fold([0.0; 3], |[a, b, c], [x, y, z]| [a + x, b + y, c + z]);
         let mean =
-            Difference::of(mean_of(sites, |batch| batch.frequent), Moments { n, mean: covered, variance }, model);
+            Difference::of(&sums(sites, |batch| batch.frequent), Moments { n, mean: covered, variance }, model, told);
         Self { sites, each: each.collect(), mean, covered }
     }
 
@@ -143,7 +150,7 @@ pub(super) fn estimate(sites: &[Site<'_>], options: &Options) -> [Check; 2] {
 
 /// The bias of a strategy that declares one, as a share of the mean radiance, with its 95 % interval; always passes.
 pub(super) fn bias(sites: &[Site<'_>], why: &str) -> Check {
-    let found = mean_of(sites, |batch| batch.whole);
+    let found = Moments::of(sums(sites, |batch| batch.whole));
     let wanted: f64 = sites.iter().map(|site| site.truth.total()).sum();
     let scale = 1.0 / wanted.max(f64::MIN_POSITIVE);
     let value = (found.mean - wanted) * scale;
@@ -152,11 +159,10 @@ pub(super) fn bias(sites: &[Site<'_>], why: &str) -> Check {
     Check { name: BIAS, statistic: value, limit: f64::INFINITY, passed: true, detail }
 }
 
-/// Moments over batches of the sum over receivers.
-fn mean_of(sites: &[Site<'_>], of: fn(&Batch) -> f64) -> Moments {
+/// The sum over receivers of each batch.
+fn sums(sites: &[Site<'_>], of: fn(&Batch) -> f64) -> Vec<f64> {
     let batches = sites.first().map_or(0, |site| site.batches as usize);
-    let sums: Vec<f64> = (0..batches).map(|batch| sites.iter().map(|site| of(site.batch(batch))).sum()).collect();
-    Moments::of(sums.iter().copied())
+    (0..batches).map(|batch| sites.iter().map(|site| of(site.batch(batch))).sum()).collect()
 }
 
 pub(super) fn surprise(p: f64) -> f64 {

@@ -19,7 +19,7 @@ use crate::scene::small::{cuboid, point};
 use crate::scene::{Parts, Scene};
 use crate::strategy::erased::AnySampler;
 use crate::strategy::registry::Configured;
-use crate::strategy::{BuildContext, Claim};
+use crate::strategy::{BuildContext, Claim, Role};
 use crate::verify::contract::{picks_in_range, picks_valid};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
@@ -67,8 +67,9 @@ enum Change {
     Hidden,
 }
 
-/// Most pixels of a film here: the view is built anew for every change.
-const PIXELS: u32 = 64 * 36;
+/// Enough pixels of a film for checks: a view is built anew for every change, and a frame-wide sampler looks at all of it in
+/// every pass.
+pub const PIXELS: u32 = 64 * 36;
 
 /// A scene and its changed copies, made ready.
 pub struct Copies {
@@ -80,10 +81,7 @@ impl Copies {
     /// Changes a scene in every way.
     pub fn new(scene: &Scene, offset: Offset) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
-        let (width, height) = parts.camera.resolution();
-        let shrink = (f64::from(PIXELS) / (f64::from(width) * f64::from(height))).sqrt().min(1.0);
-        let shrunk = |pixels: u32| ((f64::from(pixels) * shrink) as u32).max(1);
-        parts.camera = parts.camera.resized(shrunk(width), shrunk(height));
+        parts.camera = parts.camera.shrunk(PIXELS);
         let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset));
         let whole = ready(parts.clone())?;
         let changed = CHANGES.iter().map(|(_, change, _)| ready(change.of(parts.clone(), &whole)));
@@ -149,7 +147,10 @@ impl<'a> Metamorphic<'a> {
         if strategy.info().claim != Claim::Unbiased || !checks[0].passed {
             return Ok(checks);
         }
-        checks.extend(self.counts(&*base, &samplers));
+        // A choice by shadow rays depends on how far they keep off surfaces, which is no length of the scene.
+        if strategy.info().role != Role::Oracle {
+            checks.extend(self.counts(&*base, &samplers));
+        }
         for ((name, ..), subject) in CHANGES.iter().zip(subjects()) {
             let mut check = estimate(name, &subject);
             if !check.passed {

@@ -1,13 +1,13 @@
 //! What does a sampler do, seen from outside: many draws at a few receivers.
 //!
 //! Each batch is an independent run, so that batches may be compared whatever the numbers of the passes within one have to
-//! do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others, shows it:
-//! any numbers that do not depend on the draws may take the place of expected counts in the tests.
+//! do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others, shows
+//! which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
 
 use super::Subject;
 use super::pool::{Bin, Pool, Steady};
 use super::truth::{Truth, grey};
-use crate::base::statistics::Moments;
+use crate::base::statistics::{Moments, skewness, unskewed};
 use crate::render::exact::shadowed;
 use crate::scene::receiver::Receiver;
 use crate::strategy::erased::{Frame, PickBuffer, blocks};
@@ -74,6 +74,11 @@ impl Site<'_> {
         self.told.then_some(&self.counts)
     }
 
+    /// Whether a light is expected to be picked, or was often enough to tell.
+    pub(super) fn often(&self, light: usize) -> bool {
+        self.counts[light] > 0.0
+    }
+
     /// Moments over the batches of picks a call.
     pub(super) fn picks(&self) -> Moments {
         self.moments(|batch| batch.picks)
@@ -89,9 +94,9 @@ impl Site<'_> {
         self.moments(|batch| batch.excess)
     }
 
-    /// Of the estimate from lights that are hit often enough.
-    pub(super) fn frequent(&self) -> Moments {
-        self.moments(|batch| batch.frequent)
+    /// The estimate of each batch from lights that are hit often enough.
+    pub(super) fn frequent(&self) -> Vec<f64> {
+        self.finished.iter().map(|batch| batch.frequent).collect()
     }
 
     fn moments(&self, of: fn(&Batch) -> f64) -> Moments {
@@ -115,7 +120,13 @@ impl Site<'_> {
 
     /// Of a bin's batches, a call.
     pub(super) fn found(&self, bin: &Bin) -> Moments {
-        bin.moments(self.batches, self.calls)
+        Moments::of(bin.batches().map(|sum| sum / f64::from(self.calls)))
+    }
+
+    /// A t statistic of batches without their skewness, where that must be measured: the model of picks with told counts
+    /// knows it better.
+    pub(super) fn unskewed(&self, t: f64, batches: impl IntoIterator<Item = f64> + Clone) -> f64 {
+        if self.told { t } else { unskewed(t, skewness(batches), self.batches as usize) }
     }
 
     /// Variance, least variance and third central moment that the mean of the estimate from frequent lights should have.
@@ -133,10 +144,10 @@ impl Site<'_> {
     /// at least; by luck, batches of even numbers may all show the same.
     pub(super) fn variance(&self, found: Moments, wanted: f64, chance: f64) -> f64 {
         let mut variance = found.variance / found.n as f64;
-        if wanted * self.draws() < PLENTY {
-            variance = variance.max(wanted * chance / self.draws());
-        }
         if self.told {
+            if wanted * self.draws() < PLENTY {
+                variance = variance.max(wanted * chance / self.draws());
+            }
             let calls = f64::from(self.calls);
             variance = variance.max(toss(wanted * calls) / (calls * calls * f64::from(self.batches)));
         }
@@ -146,7 +157,7 @@ impl Site<'_> {
     fn take(&mut self, subject: &Subject<'_, '_>, buffer: &PickBuffer, rays: &mut u64) {
         let stage = subject.stage();
         let lights = stage.scene().lights();
-        let (batch, total) = (&mut self.current, self.truth.total());
+        let batch = &mut self.current;
         for pick in buffer.calls().flatten() {
             let (id, weight) = (pick.light as usize, f64::from(pick.weight));
             self.seen[id] = true;
@@ -159,11 +170,8 @@ impl Site<'_> {
             if self.steady.holds(id) {
                 batch.frequent += weight * value;
             }
-            if !self.told {
-                self.pool.add(id, weight * value / total);
-            } else {
+            if self.told {
                 let unit = weight * f64::from(self.counts[id]);
-                self.pool.add(id, unit);
                 if (unit - 1.0).abs() > self.worst_reciprocal.0 {
                     self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
                 }
@@ -172,6 +180,7 @@ impl Site<'_> {
                     batch.excess += unit - 1.0;
                 }
             }
+            self.pool.add(id, weight);
         }
         batch.picks += buffer.len() as f64;
     }

@@ -2,113 +2,102 @@
 
 use super::observe::toss;
 use super::truth::Truth;
-use crate::base::statistics::Moments;
 
 /// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there is
 /// nothing to test.
 const BIN: f64 = 30.0;
 
-/// Where expected counts are not told, lights that add less than this share of the radiance together share a bin: the
-/// weight of a light that others stand in the light of is rarely great, and a mean of few such hits tells nothing.
-const SHARE: f64 = 0.125;
-
 /// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
 /// the estimate, on both sides of the comparison; the other checks still hold them.
 const SKEWNESS: f64 = 0.25;
 
+/// Parts of the radiance where expected counts cannot be told, lights sorted by what they add, and picks of each in the
+/// pilot run: their weights differ, and few would not show by how much.
+const PARTS: f64 = 8.0;
+const PART: f64 = 200.0;
+
 /// The lights that add something and can be picked, in bins.
 ///
-/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where expected counts
-/// are not told it is the sum of weight times what the point adds, as a share of the radiance: such a sampler may choose
-/// its points too, and weigh only those that add anything.
+/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where counts cannot be
+/// told it is the sum of weight times contribution. Resampling gives a light that is dim beside others a great weight on
+/// the rare occasions that it wins against them; only together do the dim ones win often enough to be tested.
 pub(super) struct Pool {
     bins: Vec<Bin>,
-    /// Of each light; `u32::MAX` is none.
-    bin_of: Vec<u32>,
+    /// What a pick of each light adds to its bin when its weight is 1, and its bin; `u32::MAX` is none.
+    lights: Vec<(f64, u32)>,
 }
 
 /// Lights that are tested together.
 #[derive(Clone, Default)]
 pub(super) struct Bin {
-    /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count.
+    /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count, if told.
     pub(super) expected: f64,
     pub(super) chance: f64,
-    /// Variance of `expected` itself, where the truth is sampled.
-    pub(super) noise: f64,
     /// One of the lights.
     pub(super) first: u32,
-    /// The sum over the current batch; sum and sum of squares over batches.
+    /// Expected picks in all draws.
+    picks: f64,
+    /// The sum over the current batch, and those of the batches before.
     batch: f64,
-    sum: f64,
-    squares: f64,
+    finished: Vec<f64>,
 }
 
 impl Bin {
-    /// The moments of the batches' values divided by the calls of a batch.
-    pub(super) fn moments(&self, batches: u32, calls: u32) -> Moments {
-        let (n, calls) = (f64::from(batches), f64::from(calls));
-        let mean = self.sum / n;
-        let variance = ((self.squares - n * mean * mean) / (n - 1.0).max(1.0)).max(0.0);
-        Moments { n: batches as usize, mean: mean / calls, variance: variance / (calls * calls) }
+    /// The sums of the batches.
+    pub(super) fn batches(&self) -> impl Iterator<Item = f64> + Clone {
+        self.finished.iter().copied()
     }
 }
 
 impl Pool {
-    /// Bins of the lights that have `counts`, expected picks a call, sorted by those where they are `told`; `draws` calls
-    /// are made.
+    /// Bins for `draws` calls; `counts` are the expected picks a call, `told` by the sampler or seen in a pilot run.
     pub(super) fn new(truth: &Truth, counts: &[f32], told: bool, draws: f64) -> Self {
-        let total = truth.total();
-        let expected = |i: usize| if told { f64::from(counts[i]) } else { truth.lights()[i] / total };
-        let chance = |expected: f64| if told { (1.0 - expected).max(0.0) } else { 1.0 };
-        let full = if told { BIN / draws } else { SHARE };
+        let share = |i: usize| if told { f64::from(counts[i]) } else { truth.lights()[i] };
         let mut order: Vec<usize> = (0..counts.len()).filter(|&i| truth.adds(i) && counts[i] > 0.0).collect();
-        order.sort_by(|&a, &b| expected(a).total_cmp(&expected(b)));
-        let mut bins: Vec<Bin> = Vec::new();
-        let mut bin_of = vec![u32::MAX; counts.len()];
-        let mut left: f64 = order.iter().map(|&light| expected(light)).sum();
-        if left < full {
+        order.sort_by(|&a, &b| share(a).total_cmp(&share(b)));
+        let mut left: f64 = order.iter().map(|&light| share(light)).sum();
+        // What a bin needs of shares and of picks.
+        let (part, picks) = if told { (0.0, BIN) } else { (left / PARTS, PART) };
+        let mut picks_left = order.iter().map(|&light| f64::from(counts[light]) * draws).sum::<f64>();
+        if picks_left < picks {
             order.clear();
         }
+        let mut bins: Vec<Bin> = Vec::new();
+        let mut lights = vec![(0.0, u32::MAX); counts.len()];
         for light in order {
-            let full_enough = bins.last().is_none_or(|bin| bin.expected >= full);
+            let full = bins.last().is_none_or(|bin| bin.expected >= part && bin.picks >= picks);
             // What would not fill another joins the last.
-            if bins.is_empty() || full_enough && left >= full {
+            if bins.is_empty() || full && left >= part && picks_left >= picks {
                 bins.push(Bin { first: light as u32, ..Bin::default() });
             }
-            let more = expected(light);
-            left -= more;
+            let expected = f64::from(counts[light]) * draws;
+            (left, picks_left) = (left - share(light), picks_left - expected);
             let at = bins.len() - 1;
-            bins[at].expected += more;
-            bins[at].chance += more * chance(more);
-            bin_of[light] = at as u32;
+            bins[at].picks += expected;
+            bins[at].expected += share(light);
+            bins[at].chance += share(light) * (1.0 - f64::from(counts[light])).max(0.0);
+            lights[light] = (share(light), at as u32);
         }
-        for (at, bin) in (0u32..).zip(&mut bins) {
-            bin.chance /= bin.expected;
-            if !told {
-                let truth = truth.sum(|light| bin_of[light] == at);
-                bin.noise = truth.variance / truth.n as f64 / (total * total);
-            }
-        }
-        Self { bins, bin_of }
+        bins.iter_mut().for_each(|bin| bin.chance /= bin.expected);
+        Self { bins, lights }
     }
 
     pub(super) fn bins(&self) -> &[Bin] {
         &self.bins
     }
 
-    /// Adds a pick of a light: its part of the statistic.
-    pub(super) fn add(&mut self, light: usize, unit: f64) {
-        if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
-            bin.batch += unit;
+    /// Adds a pick of a light.
+    pub(super) fn add(&mut self, light: usize, weight: f64) {
+        let (share, bin) = self.lights[light];
+        if let Some(bin) = self.bins.get_mut(bin as usize) {
+            bin.batch += weight * share;
         }
     }
 
     /// Ends a batch.
     pub(super) fn close(&mut self) {
         for bin in &mut self.bins {
-            bin.sum += bin.batch;
-            bin.squares += bin.batch * bin.batch;
-            bin.batch = 0.0;
+            bin.finished.push(std::mem::take(&mut bin.batch));
         }
     }
 }

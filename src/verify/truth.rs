@@ -19,6 +19,7 @@ pub struct Truth {
     /// Of the triangles, by light; `delta` holds 0 there.
     triangles: Vec<(u32, [f64; REPEATS])>,
     mean: Vec<f64>,
+    total: f64,
 }
 
 impl Truth {
@@ -44,7 +45,8 @@ impl Truth {
             mean[id as usize] = values.iter().sum::<f64>() / REPEATS as f64;
             triangles.push((id, values));
         }
-        Self { delta, triangles, mean }
+        let total = mean.iter().sum();
+        Self { delta, triangles, mean, total }
     }
 
     /// What each light adds.
@@ -54,12 +56,12 @@ impl Truth {
 
     /// What all lights add.
     pub fn total(&self) -> f64 {
-        self.mean.iter().sum()
+        self.total
     }
 
     /// Whether a light adds anything that f32 can tell from nothing beside the rest.
     pub fn adds(&self, light: usize) -> bool {
-        self.mean[light] > 1e-8 * self.total()
+        self.mean[light] > 1e-8 * self.total
     }
 
     /// What a light without extent adds; `None` for a triangle, where it depends on the point.

@@ -1,5 +1,4 @@
-//! Do the weights of each light sum to 1 on average? If a sampler cannot tell how often it picks: do they sum to what the
-//! light adds, each times what its point adds?
+//! Do the weights of each light sum to 1 on average?
 
 use super::observe::{PLENTY, Site, freedom};
 use super::{Check, Options};
@@ -28,15 +27,15 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
             let variance = site.variance(found, bin.expected, bin.chance);
             // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
-            let skewness = if picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
-            let z = (found.mean - bin.expected) / (variance + bin.noise + (ROUNDING * bin.expected).powi(2)).sqrt();
+            let skewness = if site.expected().is_some() && picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
+            let z = (found.mean - bin.expected) / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
             // Johnson, JASA 73, 1978: a mean's statistic without its skewness, to first order.
-            let z = z - skewness / 6.0 * (z * z - 1.0);
+            let z = site.unskewed(z - skewness / 6.0 * (z * z - 1.0), bin.batches());
             if z.is_nan() || z.abs() > worst.0 {
                 worst = (
                     if z.is_nan() { f64::INFINITY } else { z.abs() },
                     format!(
-                        "; worst at pixel {}, light {} and its like: {:.4} of {:.4} a call",
+                        "; worst at pixel {} light {} and its like: {:.4} of {:.4} a call",
                         site.at.pixel, bin.first, found.mean, bin.expected
                     ),
                 );
