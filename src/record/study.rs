@@ -166,6 +166,17 @@ pub enum Cell {
     Number(f64),
 }
 
+impl Cell {
+    /// The number that it holds, if it does.
+    pub fn number(&self) -> Option<f64> {
+        match *self {
+            Self::Number(number) => Some(number),
+            Self::Whole(count) => Some(count as f64),
+            Self::Missing | Self::Text(_) => None,
+        }
+    }
+}
+
 /// One row of a table, a cell a column.
 pub type Cells = Vec<Cell>;
 

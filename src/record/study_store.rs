@@ -39,7 +39,7 @@ impl StudyWriter {
     ///
     /// If there is no such table or the cells are not those of its columns: a mistake in a study's own code.
     pub fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
-        let at = self.study.record.tables.iter().position(|t| t.name == table).expect("a study names its own tables");
+        let at = self.place(table);
         let columns = &self.study.record.tables[at].columns;
         let fits = cells.len() == columns.len() && columns.iter().zip(&cells).all(|(c, cell)| c.format.takes(cell));
         assert!(fits, "a row of `{table}` does not fit its columns: {cells:?}");
@@ -54,14 +54,18 @@ impl StudyWriter {
         self.study.record.notes.push(note);
     }
 
-    /// The rows of a table so far.
+    /// A table and its rows so far.
     ///
     /// # Panics
     ///
     /// If there is no such table: a mistake in a study's own code.
-    pub fn rows(&self, table: &str) -> &[Cells] {
-        let at = self.study.record.tables.iter().position(|t| t.name == table).expect("a study names its own tables");
-        &self.study.rows[at]
+    pub fn table(&self, name: &str) -> (&TableRecord, &[Cells]) {
+        let at = self.place(name);
+        (&self.study.record.tables[at], &self.study.rows[at])
+    }
+
+    fn place(&self, table: &str) -> usize {
+        self.study.record.tables.iter().position(|t| t.name == table).expect("a study names its own tables")
     }
 
     /// Ends the study, which took `wall_s` seconds.

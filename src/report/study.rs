@@ -109,7 +109,7 @@ fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
 /// The half width that stands beside the column at `at`, if there is one.
 fn half_width(table: &TableRecord, cells: &[Cell], at: usize) -> Option<f64> {
     let next = table.columns.get(at + 1).filter(|column| column.format == Format::HalfWidth);
-    next.and_then(|_| number(&cells[at + 1]))
+    next.and_then(|_| cells[at + 1].number())
 }
 
 fn entry(column: &ColumnRecord, cell: &Cell, half_width: Option<f64>) -> Entry {
@@ -132,14 +132,6 @@ fn entry(column: &ColumnRecord, cell: &Cell, half_width: Option<f64>) -> Entry {
     Entry::Text(text)
 }
 
-fn number(cell: &Cell) -> Option<f64> {
-    match cell {
-        Cell::Number(number) => Some(*number),
-        Cell::Whole(count) => Some(*count as f64),
-        Cell::Missing | Cell::Text(_) => None,
-    }
-}
-
 fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotRecord) -> Chart {
     let scale = |axis: &AxisRecord| Scale { label: axis.label.clone(), logarithmic: axis.logarithmic };
     let (x, y) = (scale(&plot.x), scale(&plot.y));
@@ -158,8 +150,8 @@ fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotR
         for (nth, name) in names.iter().enumerate() {
             let of_series = |cells: &&Cells| cell(cells, &plot.series).is_some_and(|cell| label(&cell) == *name);
             let dot = |cells: &Cells| {
-                let value = |column: &str| cell(cells, column).as_ref().and_then(number);
-                let half_width = width.and_then(|at| number(&cells[at + 1])).unwrap_or(f64::NAN);
+                let value = |column: &str| cell(cells, column).and_then(|cell| cell.number());
+                let half_width = width.and_then(|at| cells[at + 1].number()).unwrap_or(f64::NAN);
                 Some(Dot { x: value(&plot.x.column)?, y: value(column)?, half_width })
             };
             let points = rows.iter().filter(of_series).filter_map(dot);

@@ -6,10 +6,13 @@
 //! Adding one takes a file here and a line in [`STUDIES`].
 
 mod area;
+mod cutoff;
 
 pub mod fit;
+mod plane;
 
 pub mod quality;
+mod scaling;
 
 mod strategies;
 mod table;
@@ -30,7 +33,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Every study, in the order of `citylights list studies`.
-pub const STUDIES: [Entry; 1] = [strategies::ENTRY];
+pub const STUDIES: [Entry; 3] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY];
 
 /// A study that can be named.
 #[derive(Clone, Copy)]
@@ -51,9 +54,9 @@ pub struct Options {
     pub overrides: Overrides,
     /// The strategies, as a list with parameters, instead of the study's own.
     pub strategies: Option<String>,
-    /// Receivers drawn by area of street and facade.
+    /// Receivers drawn by area of street and facade, for what needs no rays.
     pub receivers: usize,
-    /// Receivers of the camera that errors are taken over.
+    /// Receivers that errors are taken over.
     pub pixels: usize,
     /// Passes of a run.
     pub passes: u32,
@@ -149,7 +152,7 @@ impl Session<'_> {
         if let Some(list) = &self.options.strategies {
             return registry::parse_list(list);
         }
-        let own = STRATEGIES.iter().map(|entry| entry.info());
+        let own = STRATEGIES.iter().map(registry::Entry::info);
         let own = own.filter(|info| matches!(info.role, Role::Choosing | Role::Oracle)).map(|info| info.name);
         own.chain(variants.iter().copied()).map(registry::parse).collect()
     }
