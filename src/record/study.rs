@@ -137,8 +137,8 @@ pub struct PlotRecord {
     pub y: AxisRecord,
     /// Further columns along the vertical axis, each with what it adds to a curve's name: drawn dashed, with hollow marks.
     pub beside: Vec<(String, String)>,
-    /// Values of `series` that are drawn dashed, with hollow marks.
-    pub hollow: Vec<String>,
+    /// Values of `series` that are biased: drawn dashed, with hollow marks.
+    pub biased: Vec<String>,
 }
 
 /// One axis of a plot.
@@ -158,7 +158,7 @@ pub struct AxisRecord {
 pub enum Cell {
     /// Nothing: not measured, or without meaning here.
     Missing,
-    /// A text; line breaks in it become spaces.
+    /// A text, never empty; line breaks in it become spaces.
     Text(String),
     /// A whole number.
     Whole(u64),
@@ -182,7 +182,7 @@ pub type Cells = Vec<Cell>;
 
 impl From<&str> for Cell {
     fn from(text: &str) -> Self {
-        Self::Text(text.replace(['\r', '\n'], " "))
+        if text.is_empty() { Self::Missing } else { Self::Text(text.replace(['\r', '\n'], " ")) }
     }
 }
 

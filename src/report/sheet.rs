@@ -59,7 +59,9 @@ impl Head {
     }
 }
 
-/// Longest line of a strategy's name on a terminal; with it the widest table stays within 140 columns.
+/// Columns of a terminal that all is made to fit.
+pub(super) const WIDTH: usize = 140;
+/// Longest line of a strategy's name on a terminal; with it the widest table stays within [`WIDTH`].
 const NAME_WIDTH: usize = 22;
 
 impl Sheet {
@@ -102,7 +104,8 @@ impl Sheet {
         if !self.below.is_empty() {
             text.push('\n');
         }
-        self.below.iter().for_each(|note| _ = writeln!(text, " {note}"));
+        let lines = self.below.iter().flat_map(|note| broken(note, WIDTH - 1));
+        lines.for_each(|line| _ = writeln!(text, " {line}"));
         text
     }
 
@@ -137,6 +140,22 @@ impl Sheet {
     fn is_new_group(&self, at: usize) -> bool {
         at > 0 && self.lines[at - 1].group != self.lines[at].group
     }
+}
+
+/// `text` in lines of at most `width` where words allow it; further lines are indented.
+pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            Some(_) => lines.push(format!("  {word}")),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// What Markdown would take for the end of a cell, marked as none.

@@ -3,7 +3,7 @@
 use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::Mark;
 use super::number::{NONE, bytes, grouped, percent, short, signed_percent, with_share};
-use super::sheet::{Entry, Head, Line, Sheet};
+use super::sheet::{Entry, Head, Line, Sheet, WIDTH, broken};
 use crate::base::error::Result;
 use crate::record::study::{
     AxisRecord, Cell, Cells, ColumnRecord, Format, PlotRecord, Study, StudyRecord, TableRecord,
@@ -15,8 +15,9 @@ use std::fmt::Write;
 pub fn study_text(study: &Study) -> String {
     let record = &study.record;
     let mut text = format!("{}: {}\n", record.study, record.question);
-    record.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
-    warnings(record).iter().for_each(|warning| _ = writeln!(text, "  warning: {warning}"));
+    let warnings = warnings(record).into_iter().map(|warning| format!("warning: {warning}"));
+    let lines = record.notes.iter().cloned().chain(warnings).flat_map(|line| broken(&line, WIDTH - 2));
+    lines.for_each(|line| _ = writeln!(text, "  {line}"));
     sheets(study).for_each(|sheet| _ = write!(text, "\n{}", sheet.text()));
     text
 }
@@ -87,7 +88,10 @@ fn sheets(study: &Study) -> impl Iterator<Item = Sheet> {
 }
 
 fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
-    let shown = || table.columns.iter().enumerate().filter(|(_, column)| column.format != Format::HalfWidth);
+    // A column that says nothing in any row is left out.
+    let is_empty = |at: usize| !rows.is_empty() && rows.iter().all(|cells| cells[at] == Cell::Missing);
+    let is_shown = |(at, column): &(usize, &ColumnRecord)| column.format != Format::HalfWidth && !is_empty(*at);
+    let shown = || table.columns.iter().enumerate().filter(is_shown);
     let heads = shown().map(|(_, column)| match column.format.is_text() {
         true => Head::left(&column.head),
         false => Head::right(&column.head),
@@ -156,12 +160,17 @@ fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotR
             };
             let points = rows.iter().filter(of_series).filter_map(dot);
             let points = points.filter(|dot| x.shows(dot.x) && y.shows(dot.y)).collect();
-            let mark = Mark::nth(nth, column != own.0 || plot.hollow.contains(name));
+            let mark = Mark::nth(nth, column != own.0 || plot.biased.contains(name));
             series.push(Series { name: format!("{name}{adds}"), mark, points });
         }
     }
     let subtitle = format!("study {}, seed {}; {}", record.study, record.seed, table.title);
-    Chart { title: plot.title.clone(), subtitle, x, y, series, remarks: Vec::new() }
+    let is_drawn = |name: &String| series.iter().any(|s| s.name == *name && !s.points.is_empty());
+    let remarks = match plot.biased.iter().any(is_drawn) {
+        true => vec![(34, "dashed and hollow: biased".to_owned())],
+        false => Vec::new(),
+    };
+    Chart { title: plot.title.clone(), subtitle, x, y, series, remarks }
 }
 
 fn is_half_width(column: &ColumnRecord) -> bool {

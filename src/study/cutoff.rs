@@ -142,7 +142,7 @@ fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String])
     ]);
     let curves = |what: &str, title: String, y: (&str, &str)| -> PlotRecord {
         let mut plot = plot(&format!("{name}-{what}"), &title, "strategy", ("lights", "lights"), y);
-        plot.hollow = biased.to_vec();
+        plot.biased = biased.to_vec();
         plot
     };
     let mut lost = curves("lost", format!("light lost: {title}"), ("lost_share", "share of all light"));

@@ -86,10 +86,10 @@ fn growth(session: &Session<'_>, strategies: &[Configured]) -> TableRecord {
     ];
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
     columns.extend([column("error_passes", "relMSE\nx passes", Format::Number), column("remark", "", Format::Words)]);
-    let hollow = strategies.iter().filter(|s| matches!(blank(s).claim, Claim::Biased { .. }));
-    let hollow: Vec<String> = hollow.map(|s| s.name().to_owned()).collect();
+    let biased = strategies.iter().filter(|s| matches!(blank(s).claim, Claim::Biased { .. }));
+    let biased: Vec<String> = biased.map(|s| s.name().to_owned()).collect();
     let plot = |(column, what, label): (&str, &str, &str)| PlotRecord {
-        hollow: hollow.clone(),
+        biased: biased.clone(),
         ..plot(
             &column.replace('_', "-"),
             &format!("{what} against lights"),

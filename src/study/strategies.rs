@@ -94,7 +94,7 @@ fn tables(session: &Session<'_>, scene: &Scene, strategies: &[Configured]) -> [T
         ("cpu_s_a_sample", "CPU s a sample"),
         ("rel_mse", "relMSE"),
     );
-    error_plot.hollow = biased.map(|s| s.name().to_owned()).collect();
+    error_plot.biased = biased.map(|s| s.name().to_owned()).collect();
     let mut columns = vec![
         column("strategy", "strategy", Format::Name),
         column("claim", "claim", Format::Words),
@@ -194,7 +194,7 @@ fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> 
         (found.len() as u64).into(),
         ((found.len() - all.len()) as u64).into(),
         (all.iter().filter(|quality| quality.variance.is_infinite()).count() as u64).into(),
-        "".into(),
+        Cell::Missing,
     ]
 }
 

@@ -28,7 +28,7 @@ pub(super) fn plot(name: &str, title: &str, series: &str, x: (&str, &str), y: (&
         x: axis(x),
         y: axis(y),
         beside: Vec::new(),
-        hollow: Vec::new(),
+        biased: Vec::new(),
     }
 }
 
@@ -49,7 +49,7 @@ pub(super) fn claim(summary: &Summary) -> Cell {
     .into()
 }
 
-/// Why a strategy has no figures; empty where it has.
+/// Why a strategy has no figures; missing where it has.
 pub(super) fn remark(summary: &Summary) -> Cell {
     let failed = summary.error.as_ref().map(|error| format!("failed: {error}"));
     failed.or_else(|| summary.skipped.clone()).as_deref().into()
