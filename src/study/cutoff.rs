@@ -7,6 +7,7 @@ use super::area::by_area;
 use super::plane::{closed_form, plane};
 use super::quality::unshadowed;
 use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
+use super::timing::{self, Timing};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::errors::Truth;
@@ -159,6 +160,7 @@ fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String])
             ),
             "b² is squared bias in units of relMSE, V variance x CPU seconds; from t* = V / b² on, bias outweighs noise (0: from the start)."
                 .into(),
+            timing::note("a frame of 240 x 135 pixels"),
         ],
         plots: vec![lost, time],
     }
@@ -234,6 +236,9 @@ fn in_the_city(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[Co
     try_all(session, writer, OPENNESS[2].0, &built, &receivers, strategies)
 }
 
+/// Receivers of a frame that share the state of a pass: an image of 240 x 135 pixels.
+const FRAME: usize = 240 * 135;
+
 /// Lights per km^2 of a city that has lamps alone, about.
 const DENSITY: f64 = 1_000.0;
 /// Exposure of the cities, as of `scenes/downtown.toml`.
@@ -278,28 +283,32 @@ fn try_all(
         seed: options.seed,
         threads: options.threads,
     };
-    for summary in trials.run(strategies, session.watch)? {
+    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+        let timing = Timing::of(&trials, strategy, &summary, FRAME)?;
         let mut cells = vec![(stage.scene().lights().len() as u64).into()];
-        cells.extend(bias_cells(&summary, receivers.len()));
+        cells.extend(bias_cells(&summary, timing, receivers.len()));
         writer.row(table, cells)?;
     }
     Ok(())
 }
 
-fn bias_cells(summary: &Summary, receivers: usize) -> Vec<Cell> {
+fn bias_cells(summary: &Summary, timing: Option<Timing>, receivers: usize) -> Vec<Cell> {
     let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
     if measured(summary) {
-        let samples = f64::from(summary.passes) * receivers as f64;
+        let seconds = timing.map(|timing| timing.sample_s());
+        // V at the time that these passes take in a whole frame, for the measured receivers' share of it.
+        let share = seconds.map(|s| s * f64::from(summary.passes) * receivers as f64 / summary.cpu_s);
+        let variance = share.map(|share| summary.variance_seconds * share);
         let lost = Interval { mean: -summary.mean_bias.mean, ..summary.mean_bias };
         let picks = summary.counts.picks as f64 / summary.counts.samples as f64;
-        cells.extend([u64::from(summary.passes).into(), picks.into(), (summary.cpu_s / samples).into()]);
+        cells.extend([u64::from(summary.passes).into(), picks.into(), seconds.into()]);
         cells.extend(both(lost));
         cells.extend(both(summary.rel_mse));
         let is_biased = !unbiased(summary);
         cells.extend(if is_biased { both(summary.rel_bias2) } else { [Cell::Missing, Cell::Missing] });
-        cells.push(summary.variance_seconds.into());
+        cells.push(variance.into());
         let outweighs = is_biased && summary.rel_bias2.mean > summary.rel_bias2.half_width;
-        cells.push(outweighs.then(|| summary.variance_seconds / summary.rel_bias2.mean).into());
+        cells.push(variance.filter(|_| outweighs).map(|variance| variance / summary.rel_bias2.mean).into());
     } else {
         cells.resize(13, Cell::Missing);
     }

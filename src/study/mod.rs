@@ -16,6 +16,7 @@ mod scaling;
 
 mod strategies;
 mod table;
+mod timing;
 
 use crate::base::error::{Error, Result};
 use crate::base::names;

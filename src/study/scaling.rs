@@ -6,6 +6,7 @@
 use super::cutoff::sizes;
 use super::fit::PowerLaw;
 use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
+use super::timing::{self, Timing};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::plan::Budget;
@@ -108,6 +109,7 @@ fn growth(session: &Session<'_>, strategies: &[Configured]) -> TableRecord {
                 options.repeats, options.passes, options.seconds
             ),
             "a biased strategy has no relMSE x passes: its error does not fall as 1 / passes.".into(),
+            timing::note("all that the camera sees"),
         ],
         plots: QUANTITIES.map(plot).to_vec(),
     }
@@ -160,9 +162,10 @@ fn at_size(
         seed: options.seed,
         threads: options.threads,
     };
-    for summary in trials.run(strategies, session.watch)? {
+    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+        let timing = Timing::of(&trials, strategy, &summary, stage.receivers().len())?;
         let mut cells = vec![(stage.scene().lights().len() as u64).into()];
-        cells.extend(growth_cells(&summary, &target));
+        cells.extend(growth_cells(&summary, timing, &target));
         writer.row("growth", cells)?;
     }
     writer.note(format!(
@@ -174,18 +177,15 @@ fn at_size(
     Ok(())
 }
 
-fn growth_cells(summary: &Summary, target: &Target<'_>) -> Vec<Cell> {
+fn growth_cells(summary: &Summary, timing: Option<Timing>, target: &Target<'_>) -> Vec<Cell> {
     let receivers = target.receivers.len();
     let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
     if measured(summary) {
-        let samples = f64::from(summary.passes) * receivers as f64;
-        // The oracle pays for what it knows with a ray for every light: its time says nothing.
-        let is_timed = summary.claim != Claim::Oracle;
         cells.extend([
             summary.setup_cpu_s.into(),
             summary.heap_bytes.into(),
             (summary.heap_bytes as f64 / target.stage.scene().lights().len() as f64).into(),
-            is_timed.then(|| summary.cpu_s / samples).into(),
+            timing.map(|timing| timing.sample_s()).into(),
             u64::from(summary.passes).into(),
             (receivers as u64).into(),
         ]);

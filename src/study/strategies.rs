@@ -6,6 +6,7 @@
 use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
 use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
+use super::timing::{self, Timing};
 use super::{Entry, Session};
 use crate::base::error::Result;
 use crate::measure::plan::Budget;
@@ -35,7 +36,8 @@ pub(super) const ENTRY: Entry = Entry {
 const SCENES: [&str; 2] = ["scenes/downtown.toml", "scenes/plaza.toml"];
 
 /// Strategies beside the registered ones in their default form.
-const VARIANTS: &[&str] = &[];
+const VARIANTS: &[&str] =
+    &["power:points=random", "stochastic-cull:draw=receiver", "resampled:visibility=on", "restir:combine=1/M"];
 
 fn run(session: &Session<'_>) -> Result<Study> {
     let strategies = session.strategies(VARIANTS)?;
@@ -123,7 +125,11 @@ fn tables(session: &Session<'_>, scene: &Scene, strategies: &[Configured]) -> [T
             "relMSE x passes and relMSE x CPU s: lower is better. A biased strategy has none: its error does not fall as 1 / passes."
                 .into(),
             "oracle knows what is visible and is not timed: the floor of any error. intensity is the floor without visibility.".into(),
-            "sampling only: set-up is not in the CPU seconds (see `study scaling`).".into(),
+            "to oracle, to intensity: where both did the same number of passes. Set-up is not in the CPU seconds (see `study scaling`)."
+                .into(),
+            timing::note("all that the camera sees"),
+            "the measured receivers stand for all: a strategy that reuses its neighbours' choices (restir) finds them farther away here."
+                .into(),
         ],
         plots: vec![error_plot],
     };
@@ -141,17 +147,28 @@ fn by_probability(
     let stage = Stage::new(scene, LeaveOut::No, Offset::SCALED);
     let by_area = by_area(stage.scene(), stage.occluders(), session.options.receivers, session.options.seed)?;
     session.watch.begin(&table, strategies.len() as u64);
+    let mut unknown = Vec::new();
     for strategy in strategies.iter().filter(|strategy| blank(strategy).claim != Claim::Oracle) {
         session.watch.check()?;
         let built = strategy.build(BuildContext { stage: &stage, seed: session.options.seed });
-        let cells = match built {
-            Ok(sampler) => quality_cells(strategy, &by_area, &qualities(&stage, sampler.as_ref(), &by_area.receivers)),
-            Err(error) => without_figures(strategy, &format!("failed: {error}")),
-        };
-        writer.row(&table, cells)?;
+        match built.map(|sampler| qualities(&stage, sampler.as_ref(), &by_area.receivers)) {
+            Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
+            Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
+            Err(error) => {
+                let mut cells = vec![strategy.name().into(), claim(&blank(strategy))];
+                cells.resize(10, Cell::Missing);
+                cells.push(format!("failed: {error}").as_str().into());
+                writer.row(&table, cells)?;
+            }
+        }
         session.watch.advance(1);
     }
     session.watch.end();
+    if !unknown.is_empty() {
+        let (scene, names) = (stage.scene().name(), unknown.join(", "));
+        writer
+            .note(format!("{scene}: not in the table of variance, since their probabilities cannot be told: {names}."));
+    }
     Ok(())
 }
 
@@ -159,17 +176,7 @@ fn qualities(stage: &Stage, sampler: &dyn AnySampler, receivers: &[Receiver]) ->
     receivers.par_iter().map_init(Vec::new, |counts, at| quality(stage, sampler, at, counts)).collect()
 }
 
-fn without_figures(strategy: &Configured, why: &str) -> Vec<Cell> {
-    let mut cells = vec![strategy.name().into(), claim(&blank(strategy))];
-    cells.resize(10, Cell::Missing);
-    cells.push(why.into());
-    cells
-}
-
 fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> Vec<Cell> {
-    if found.contains(&Finding::Unknown) {
-        return without_figures(strategy, "its probabilities cannot be told");
-    }
     let known = |found: &[Finding]| -> Vec<Quality> {
         let known = |finding: &Finding| if let Finding::Known(quality) = *finding { Some(quality) } else { None };
         found.iter().filter_map(known).collect()
@@ -218,31 +225,31 @@ fn by_measuring(
         seed: options.seed,
         threads: options.threads,
     };
-    let summaries = trials.run(strategies, session.watch)?;
-    let samples = |summary: &Summary| f64::from(summary.passes) * target.receivers.len() as f64;
-    let by_passes = |s: &Summary| (measured(s) && unbiased(s)).then(|| s.rel_mse.mean * f64::from(s.passes));
-    let by_seconds = |s: &Summary| by_passes(s).filter(|_| is_timed(s)).map(|_| s.rel_mse.mean * s.cpu_s);
-    let of = |name: &str, value: &dyn Fn(&Summary) -> Option<f64>| {
-        summaries.iter().find(|summary| summary.strategy == name).and_then(value)
-    };
-    let ratio = |value: Option<f64>, to: Option<f64>| Cell::from(value.zip(to).map(|(value, to)| value / to));
-    for summary in &summaries {
-        let (a_pass, a_second) = (by_passes(summary), by_seconds(summary));
+    let frame = stage.receivers().len();
+    let mut found = Vec::new();
+    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+        let timing = Timing::of(&trials, strategy, &summary, frame)?;
+        found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
+    }
+    let receivers = target.receivers.len() as f64;
+    let (oracle, intensity) = (of(&found, "oracle"), of(&found, "intensity"));
+    for one in &found {
+        let summary = &one.summary;
         let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
         if measured(summary) {
             cells.push(u64::from(summary.passes).into());
             cells.extend(both(summary.rel_mse));
             cells.extend(if unbiased(summary) { [Cell::Missing, Cell::Missing] } else { both(summary.rel_bias2) });
-            cells.push(is_timed(summary).then(|| summary.cpu_s / samples(summary)).into());
         } else {
-            cells.resize(8, Cell::Missing);
+            cells.resize(7, Cell::Missing);
         }
         cells.extend([
-            a_pass.into(),
-            ratio(a_pass, of("oracle", &by_passes)),
-            ratio(a_pass, of("intensity", &by_passes)),
-            a_second.into(),
-            ratio(a_second, of("intensity", &by_seconds)),
+            one.sample_s.into(),
+            one.error_passes().into(),
+            one.ratio(oracle, Found::error_passes).into(),
+            one.ratio(intensity, Found::error_passes).into(),
+            one.error_samples_s().map(|error| error * receivers).into(),
+            one.ratio(intensity, Found::error_samples_s).into(),
             remark(summary),
         ]);
         writer.row(&table, cells)?;
@@ -257,7 +264,32 @@ fn by_measuring(
     Ok(())
 }
 
-/// The oracle pays for what it knows with a ray for every light: its time says nothing.
-fn is_timed(summary: &Summary) -> bool {
-    summary.claim != Claim::Oracle
+/// What was found of one strategy.
+struct Found {
+    summary: Summary,
+    /// CPU seconds of a sample, where it has a time.
+    sample_s: Option<f64>,
+}
+
+impl Found {
+    /// relMSE x passes, where it means something.
+    fn error_passes(&self) -> Option<f64> {
+        let s = &self.summary;
+        (measured(s) && unbiased(s)).then(|| s.rel_mse.mean * f64::from(s.passes))
+    }
+
+    /// relMSE x passes x CPU seconds of a sample.
+    fn error_samples_s(&self) -> Option<f64> {
+        self.error_passes().zip(self.sample_s).map(|(error, seconds)| error * seconds)
+    }
+
+    /// A figure as a multiple of another strategy's at the same number of passes: points spread over passes lower it as they grow.
+    fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<f64>) -> Option<f64> {
+        let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
+        figure(self).zip(figure(to)).map(|(own, other)| own / other)
+    }
+}
+
+fn of<'a>(found: &'a [Found], strategy: &str) -> Option<&'a Found> {
+    found.iter().find(|one| one.summary.strategy == strategy)
 }
