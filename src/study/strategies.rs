@@ -36,8 +36,20 @@ pub(super) const ENTRY: Entry = Entry {
 const SCENES: [&str; 2] = ["scenes/downtown.toml", "scenes/plaza.toml"];
 
 /// Strategies beside the registered ones in their default form.
-const VARIANTS: &[&str] =
-    &["power:points=random", "stochastic-cull:draw=receiver", "resampled:visibility=on", "restir:combine=1/M"];
+const VARIANTS: &[&str] = &[
+    "power:points=random",
+    "stochastic-cull:draw=receiver",
+    "light-tree:arity=2,importance=classic",
+    "light-tree:arity=2,importance=classic,points=random",
+    "light-tree:arity=2",
+    "light-tree:arity=4",
+    "light-tree:distance=minmax",
+    "light-tree:far=0.02",
+    "light-tree:split=0.5",
+    "resampled:visibility=on",
+    "resampled:from=light-tree,m=4",
+    "restir:combine=1/M",
+];
 
 fn run(session: &Session<'_>) -> Result<Study> {
     let strategies = session.strategies(VARIANTS)?;
