@@ -46,6 +46,8 @@ pub mod report;
 pub mod scene;
 pub mod shading;
 pub mod strategy;
+#[cfg(feature = "study")]
+pub mod study;
 #[cfg(feature = "measure")]
 pub mod verify;
 pub mod visibility;

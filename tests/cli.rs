@@ -69,6 +69,37 @@ fn unknown_names_are_refused_with_near_ones() {
 }
 
 #[test]
+fn studies_are_named_listed_and_run() {
+    refused("study strategie", &["unknown study `strategie`", "strategies"]);
+    refused("study scaling --scene scenes/plaza.toml", &["scenes/plaza.toml", "`city`"]);
+    refused("study cutoff --strategies influense", &["influense", "influence"]);
+    refused("study scaling --max-lights 7", &["100..="]);
+    citylights().args(["list", "studies"]).assert().success().stdout(contains("cutoff\n    What does a hard cut-off"));
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, cache) = (folder.path().join("out"), folder.path().join("cache"));
+    let small = "study scaling --strategies power --max-lights 100 --pixels 8 --passes 2 --repeats 2 --out";
+    let study = || {
+        let mut command = citylights();
+        command.args(small.split(' ')).arg(&out).arg("--cache").arg(&cache);
+        command
+    };
+    let printed = contains("growth with the number of lights").and(contains("power"));
+    study().assert().success().stdout(printed).stderr(contains("rows go to"));
+    study().assert().code(2).stderr(contains("never overwritten"));
+    let page = folder.path().join("README.md");
+    let report = |check: &[&str]| {
+        let mut command = citylights();
+        command.arg("report").arg(&out).args(check).arg("--splice").arg(&page);
+        command
+    };
+    report(&[]).assert().success();
+    report(&["--check"]).assert().success();
+    std::fs::write(out.join("scaling.md"), "").expect("written");
+    report(&["--check"]).assert().code(1).stdout(contains("scaling.md"));
+}
+
+#[test]
 fn impossible_outputs_are_refused_before_the_work() {
     refused("render scenes/megacity.toml -o picture.jpg", &["picture.jpg", ".png or .exr"]);
     refused("render scenes/megacity.toml -o no/such/folder/x.png", &["no/such/folder"]);

@@ -2,7 +2,7 @@
 
 use super::progress::Progress;
 use super::scene::{SceneOptions, pool, threads};
-use super::{Outcome, print, say};
+use super::{Outcome, command, print, say};
 use crate::base::error::{Error, Result};
 use crate::measure::compare::{Options, compare};
 use crate::measure::environment;
@@ -200,7 +200,7 @@ fn record(arguments: &Arguments, strategies: &[Configured], scenes: &[Scene]) ->
             arguments.scene_options.describe()
         ),
         schema: SCHEMA,
-        command: std::iter::once("citylights".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" "),
+        command: command(),
         date: environment::date(),
         revision: environment::revision(),
         seed: arguments.seed,
@@ -214,7 +214,8 @@ fn record(arguments: &Arguments, strategies: &[Configured], scenes: &[Scene]) ->
     }
 }
 
-fn seconds(text: &str) -> std::result::Result<f64, String> {
+/// Parses a number of CPU seconds.
+pub(super) fn seconds(text: &str) -> std::result::Result<f64, String> {
     text.parse()
         .ok()
         .filter(|x: &f64| *x > 0.0 && *x <= 86_400.0)

@@ -1,9 +1,10 @@
-//! `citylights list`: which strategies and scenes are there?
+//! `citylights list`: which strategies, scenes and studies are there?
 
 use super::{Outcome, print};
 use crate::base::error::Error;
 use crate::strategy::Claim;
 use crate::strategy::registry::{STRATEGIES, parse};
+use crate::study::{Entry, STUDIES};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -22,12 +23,14 @@ pub(super) struct Arguments {
 enum What {
     Strategies,
     Scenes,
+    Studies,
 }
 
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let list = match arguments.what {
         What::Strategies => strategies()?,
         What::Scenes => scenes(Path::new("scenes"))?,
+        What::Studies => studies(),
     };
     if arguments.json {
         print(&format!(
@@ -67,6 +70,14 @@ fn strategy(name: &str) -> Result<Item, Error> {
         .collect();
     let json = json!({ "name": name, "summary": info.summary, "source": info.source, "claim": claim, "parameters": parameters });
     Ok(Item { text, json })
+}
+
+fn studies() -> Vec<Item> {
+    let item = |study: &Entry| Item {
+        text: format!("{}\n    {}\n", study.name, study.question),
+        json: json!({ "name": study.name, "question": study.question }),
+    };
+    STUDIES.iter().map(item).collect()
 }
 
 /// The recipes of a folder; what a scene is for stands in the comment at its head.

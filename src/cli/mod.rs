@@ -11,6 +11,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod study;
 mod verify;
 
 use crate::base::error::Error;
@@ -37,7 +38,9 @@ enum Verb {
     Reference(reference::Arguments),
     /// What is in a scene, and what can be left out of it
     Inspect(inspect::Arguments),
-    /// Name the strategies or the scenes
+    /// The experiments behind results/, by name
+    Study(study::Arguments),
+    /// Name the strategies, the scenes or the studies
     List(list::Arguments),
     /// Make tables and plots again from the raw rows of a result folder
     Report(report::Arguments),
@@ -59,6 +62,7 @@ pub fn run() -> ExitCode {
         Verb::Render(arguments) => render::run(arguments),
         Verb::Reference(arguments) => reference::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),
+        Verb::Study(arguments) => study::run(arguments),
         Verb::List(arguments) => list::run(arguments),
         Verb::Report(arguments) => report::run(arguments),
     };
@@ -71,6 +75,11 @@ pub fn run() -> ExitCode {
             ExitCode::from(if interrupted { 130 } else { 2 })
         }
     }
+}
+
+/// What was typed, for records.
+fn command() -> String {
+    std::iter::once("citylights".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
 }
 
 /// Tells the user something on stderr; one that has been closed is no error.

@@ -39,7 +39,8 @@ impl SceneOptions {
     pub(super) fn load(&self, file: &Path) -> Result<Scene, Error> {
         // exposure = 1 / (1.2 * 2^EV100)
         let ev100 = self.exposure.map(|exposure| -(1.2 * exposure).log2()).or(self.ev100);
-        let scene = recipe::load(file, &Overrides { seed: self.scene_seed, resolution: self.resolution, ev100 })?;
+        let scene =
+            recipe::load(file, &Overrides { seed: self.scene_seed, resolution: self.resolution, ev100, lights: None })?;
         for note in scene.notes() {
             say(&format!("{}: {note}", scene.name()));
         }
@@ -99,7 +100,8 @@ pub(super) fn threads(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| (1..=1024).contains(n)).ok_or_else(|| "a whole number from 1 to 1024 is right".into())
 }
 
-fn resolution(text: &str) -> Result<(u32, u32), String> {
+/// Parses pixels across and down.
+pub(super) fn resolution(text: &str) -> Result<(u32, u32), String> {
     let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     parsed
         .filter(|&(w, h): &(u32, u32)| w > 0 && h > 0)

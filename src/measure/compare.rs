@@ -1,22 +1,21 @@
 //! The main job: all strategies on one scene, interleaved, error against time.
 
-use super::clock::{Spent, timed};
 use super::films::Films;
 use super::gate::Gate;
 use super::observer::Observer;
+use super::once::Once;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
 use super::reference::{Reference, scene_hash};
 use super::summary::{blank, summarise};
 use super::target::Target;
+use super::trials::shuffle;
 use crate::base::error::{Error, Result};
-use crate::base::random::{RunKey, Stream};
+use crate::base::random::RunKey;
 use crate::record::store::RowWriter;
 use crate::record::{ReferenceRecord, Row, SceneRecord, Summary};
-use crate::render::film::Film;
-use crate::render::passes::Plan;
+use crate::strategy::Role;
 use crate::strategy::registry::Configured;
-use crate::strategy::{BuildContext, Role};
 use crate::visibility::stage::Stage;
 use glam::Vec3;
 use std::collections::HashMap;
@@ -271,55 +270,22 @@ impl Comparison<'_> {
                 }
             }
         }
-        // Fisher and Yates, so that no strategy runs while the machine is at its slowest throughout.
-        let mut rng = Stream::keyed(&[self.options.seed, u64::from_le_bytes(*b"in order")]);
-        for i in (1..units.len()).rev() {
-            units.swap(i, rng.below(i + 1));
-        }
+        shuffle(&mut units, self.options.seed);
         units
     }
 
     /// One independent run of one strategy through all its budgets, on this thread.
     fn unit(&self, index: usize, run: u32, send: &mpsc::Sender<Report>, watch: &dyn Observer) -> Result<()> {
-        let strategy = &self.options.strategies[index];
         let key = RunKey { seed: self.options.seed, run };
-        let context = BuildContext { stage: self.target.stage, seed: key.stream(u32::MAX, 0).bits() };
-        let (built, setup) = timed(|| strategy.build(context));
-        let sampler = match built {
-            Ok(sampler) => sampler,
-            Err(error) => {
-                let row = Row::failed(self.scene().to_owned(), strategy.name().to_owned(), run, 0, error.to_string());
-                return send.send(Report::Row(row)).map_err(|_| Error::Interrupted);
-            }
-        };
-        let plan = Plan { stage: self.target.stage, receivers: &self.target.receivers, sampler: sampler.as_ref(), key };
-        let mut film = Film::new(self.target.receivers.len());
-        let mut spent = Spent::default();
-        for &passes in &self.ladders[index] {
-            watch.check()?;
-            let ((), block) = timed(|| plan.run(passes - film.passes(), &mut film));
-            spent += block;
-            let errors = self.reference.truth.errors(&film.image());
-            let row = Row {
-                scene: self.scene().to_owned(),
-                strategy: strategy.name().to_owned(),
-                run,
-                passes,
-                setup_cpu_s: setup.cpu,
-                cpu_s: spent.cpu,
-                wall_s: spent.wall,
-                heap_bytes: sampler.heap_bytes() as u64,
-                mse: errors.mse,
-                rel_mse: errors.rel_mse,
-                rel_mse_trimmed: errors.rel_mse_trimmed,
-                trimmed_share: errors.trimmed_share,
-                energy_ratio: errors.energy_ratio,
-                deciles: errors.deciles,
-                error: None,
-            };
+        let strategy = &self.options.strategies[index];
+        let once = Once { target: self.target, truth: &self.reference.truth, strategy, key };
+        let image = once.through(&self.ladders[index], |row| {
             send.send(Report::Row(row)).map_err(|_| Error::Interrupted)?;
-        }
-        send.send(Report::Finished { strategy: index, run, image: film.image() }).map_err(|_| Error::Interrupted)
+            watch.check()
+        })?;
+        // A strategy that failed has its row and no image.
+        let Some(image) = image else { return Ok(()) };
+        send.send(Report::Finished { strategy: index, run, image }).map_err(|_| Error::Interrupted)
     }
 
     fn summary(&self, index: usize, pilot: &Result<Pilot>) -> Summary {

@@ -1,5 +1,6 @@
 //! How far is an image from the truth?
 
+use super::target::places;
 use crate::base::colour::luminance;
 use glam::{DVec3, Vec3};
 
@@ -41,6 +42,12 @@ impl Truth {
         let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
         by_luminance.sort_by(|&a, &b| luminance(mean[a as usize]).total_cmp(&luminance(mean[b as usize])));
         Self { epsilon: (average * average * 0.01).as_vec3(), halves, mean, by_luminance }
+    }
+
+    /// The truth at about `count` of its receivers: those of [`Target::thinned`](super::target::Target::thinned).
+    pub fn thinned(&self, count: usize) -> Self {
+        let few = |half: &Vec<Vec3>| places(half.len(), count).map(|i| half[i]).collect();
+        Self::new([few(&self.halves[0]), few(&self.halves[1])])
     }
 
     /// The best estimate, in cd/m^2.

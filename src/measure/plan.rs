@@ -128,6 +128,13 @@ impl Pilot {
             .collect()
     }
 
+    /// The most passes, a power of two and no more than usual, that fit where they are done in one block.
+    pub fn at_once(&self, budget: Budget) -> Option<u32> {
+        let seconds = |passes: u32| self.arrive_s + f64::from(passes) * self.pass_s;
+        let powers = (0..31).map(|power| 1 << power);
+        powers.take_while(|&passes| passes <= budget.usual_passes && seconds(passes) <= budget.seconds).last()
+    }
+
     /// Expected CPU seconds of the first pass.
     pub fn first_pass_s(&self) -> f64 {
         self.arrive_s + self.pass_s

@@ -35,6 +35,11 @@ impl<'a> Target<'a> {
         Self { stage, receivers: Cow::Borrowed(stage.receivers()), subset: false }
     }
 
+    /// These receivers, whoever chose them.
+    pub fn of(stage: &'a Stage, receivers: Vec<Receiver>) -> Self {
+        Self { stage, receivers: Cow::Owned(receivers), subset: true }
+    }
+
     /// The same target thinned out to about `count` receivers, for pilots.
     pub fn thinned(&self, count: usize) -> Self {
         Self { stage: self.stage, receivers: Cow::Owned(spread(&self.receivers, count)), subset: self.subset }

@@ -4,7 +4,8 @@ use super::row::COLUMNS;
 use super::{Row, RunRecord, SCHEMA};
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -39,25 +40,33 @@ pub fn file_name(name: &str) -> String {
 
 /// Writes `run.json` into `folder`, whole or not at all; it is written again as scenes finish.
 pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
-    let path = folder.join(RUN_FILE);
-    let mut text = serde_json::to_string_pretty(run).map_err(|e| input(&path, None, "", e.to_string()))?;
-    text.push('\n');
-    write_whole(&path, text.as_bytes())
+    write_record(&folder.join(RUN_FILE), run)
 }
 
 /// Reads `run.json` from `folder`; one of another schema is refused.
 pub fn read_run(folder: &Path) -> Result<RunRecord> {
+    read_record(&folder.join(RUN_FILE), SCHEMA)
+}
+
+/// Writes a record as JSON, whole or not at all.
+pub(super) fn write_record(path: &Path, record: &impl Serialize) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(record).map_err(|e| input(path, None, "", e.to_string()))?;
+    text.push('\n');
+    write_whole(path, text.as_bytes())
+}
+
+/// Reads a record from JSON; one of another schema is refused.
+pub(super) fn read_record<T: DeserializeOwned>(path: &Path, known: u32) -> Result<T> {
     #[derive(Deserialize)]
     struct Version {
         schema: u32,
     }
-    let path = folder.join(RUN_FILE);
-    let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
-    let unusable = |e: serde_json::Error| input(&path, Some(e.line()), "", e.to_string());
+    let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+    let unusable = |e: serde_json::Error| input(path, Some(e.line()), "", e.to_string());
     let Version { schema } = serde_json::from_str(&text).map_err(unusable)?;
-    if schema != SCHEMA {
-        let message = format!("is {schema}, this program reads {SCHEMA}: use the version that wrote it");
-        return Err(input(&path, None, "schema", message));
+    if schema != known {
+        let message = format!("is {schema}, this program reads {known}: use the version that wrote it");
+        return Err(input(path, None, "schema", message));
     }
     serde_json::from_str(&text).map_err(unusable)
 }
@@ -99,7 +108,7 @@ fn parse_rows(path: &Path, text: &str) -> Result<Rows> {
 }
 
 /// How many bytes of `text` are finished lines.
-fn finished_bytes(text: &str) -> usize {
+pub(super) fn finished_bytes(text: &str) -> usize {
     text.rfind('\n').map_or(0, |at| at + 1)
 }
 
@@ -159,12 +168,12 @@ impl RowWriter {
 }
 
 /// The fields as a line of CSV.
-fn line<T: AsRef<[u8]>>(fields: &[T]) -> std::io::Result<Vec<u8>> {
+pub(super) fn line<T: AsRef<[u8]>>(fields: &[T]) -> std::io::Result<Vec<u8>> {
     let mut line = csv::Writer::from_writer(Vec::new());
     line.write_record(fields)?;
     line.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
-fn input(path: &Path, line: Option<usize>, field: &str, message: String) -> Error {
+pub(super) fn input(path: &Path, line: Option<usize>, field: &str, message: String) -> Error {
     Error::Input { file: path.to_owned(), line, field: field.to_owned(), message }
 }

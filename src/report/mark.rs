@@ -37,13 +37,17 @@ pub(super) struct Mark {
 impl Mark {
     /// The look of the `nth` strategy that is neither floor nor ceiling: 35 differ. Floor and ceiling are grey and black.
     pub(super) fn new(claim: &Claim, nth: usize) -> Self {
-        let (colour, shape) = match claim {
-            Claim::Floor => (RGBColor(150, 150, 150), SHAPES[1]),
-            Claim::Ceiling | Claim::Oracle => (BLACK, SHAPES[1]),
-            // 7 and 5 have no common divisor: neighbours differ in both.
-            Claim::Unbiased | Claim::Biased { .. } => (COLOURS[nth % COLOURS.len()], SHAPES[nth % SHAPES.len()]),
-        };
-        Self { colour, shape, hollow: matches!(claim, Claim::Biased { .. }) }
+        match claim {
+            Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: SHAPES[1], hollow: false },
+            Claim::Ceiling | Claim::Oracle => Self { colour: BLACK, shape: SHAPES[1], hollow: false },
+            Claim::Unbiased | Claim::Biased { .. } => Self::nth(nth, matches!(claim, Claim::Biased { .. })),
+        }
+    }
+
+    /// The look of the `nth` curve: 35 differ.
+    pub(super) fn nth(nth: usize, hollow: bool) -> Self {
+        // 7 and 5 have no common divisor: neighbours differ in both.
+        Self { colour: COLOURS[nth % COLOURS.len()], shape: SHAPES[nth % SHAPES.len()], hollow }
     }
 
     /// Draws the shape about a pixel.

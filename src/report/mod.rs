@@ -3,6 +3,7 @@
 //! [`report`] writes them into a result folder, [`check`] says whether they are what its raw rows say. The same records give the
 //! same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
 
+mod chart;
 mod curve;
 pub mod figures;
 mod mark;
@@ -11,14 +12,18 @@ mod page;
 mod plot;
 mod sheet;
 pub mod splice;
+mod study;
 mod table;
 
 pub use page::{page, section};
 pub use plot::plot;
+pub use study::study_text;
 pub use table::table;
 
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
+use crate::record::study::Study;
+use crate::record::study_store::{is_study, read_study};
 use crate::record::{Row, RunRecord, store};
 use std::fs;
 use std::io::ErrorKind;
@@ -27,7 +32,7 @@ use std::path::{Path, PathBuf};
 /// A derived file: its name within the result folder and its content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Derived {
-    /// `<scene>.md` or `<scene>.svg`.
+    /// `<scene>.md` or `<scene>.svg`, `<study>.md` or `<study>-<plot>.svg`.
     pub name: String,
     /// All of it.
     pub text: String,
@@ -51,7 +56,40 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     Ok(files)
 }
 
-/// Writes the pages and plots of a result folder again, from its `run.json` and `runs.csv`; gives their paths.
+/// The page and the plots of a study.
+pub fn derive_study(record: &Study) -> Result<Vec<Derived>> {
+    let name = format!("{}.md", store::file_name(&record.record.study));
+    let plots = study::plots(record)?.into_iter().map(|(name, text)| Derived { name, text });
+    Ok(std::iter::once(Derived { name, text: study::page(record) }).chain(plots).collect())
+}
+
+/// A named section for a page that people write.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// The scene's name, or the study's after "study ".
+    pub name: String,
+    /// Its Markdown.
+    pub body: String,
+}
+
+/// The sections of a result folder for `page`, in order: one a scene, or one for all of a study. What they point to is named
+/// relative to the page's folder where it lies in there.
+pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
+    let seen = page.parent().and_then(|home| folder.strip_prefix(home).ok()).unwrap_or(folder);
+    if is_study(folder) {
+        let record = read_study(folder)?;
+        let name = format!("study {}", record.record.study);
+        return Ok(vec![Section { body: study::section(&record, &seen.join("").display().to_string()), name }]);
+    }
+    let (run, rows) = (store::read_run(folder)?, store::read_rows(folder)?.rows);
+    let sections = run.scenes.iter().map(|scene| {
+        let plot = seen.join(format!("{}.svg", store::file_name(&scene.name))).display().to_string();
+        Section { name: scene.name.clone(), body: section(&run, scene, &rows, &plot) }
+    });
+    Ok(sections.collect())
+}
+
+/// Writes the pages and plots of a result folder again, from its raw records and rows; gives their paths.
 pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
     let files = read(folder)?;
     files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))?;
@@ -90,6 +128,9 @@ pub fn check(folder: &Path) -> Result<Vec<Drift>> {
 }
 
 fn read(folder: &Path) -> Result<Vec<Derived>> {
+    if is_study(folder) {
+        return derive_study(&read_study(folder)?);
+    }
     let run = store::read_run(folder)?;
     derive(&run, &store::read_rows(folder)?.rows)
 }

@@ -18,41 +18,67 @@ impl<'a> Column<'a> {
     }
 }
 
-/// A row: the strategy, what is to be said about it in words, and its cells.
-struct Line {
-    strategy: String,
-    remark: String,
-    cells: Vec<String>,
+/// The head of a column, and on which side its cells stand.
+pub(super) struct Head {
+    text: String,
+    left: bool,
+}
+
+/// A cell.
+pub(super) enum Entry {
+    /// A name as it is typed, and what is to be said about it in words.
+    Name(String, String),
+    /// Words or figures.
+    Text(String),
+}
+
+/// A row.
+pub(super) struct Line {
+    pub(super) cells: Vec<Entry>,
     /// Rows of different groups stand apart.
-    group: u8,
+    pub(super) group: u32,
 }
 
-/// A titled table with one row per strategy.
+/// A titled table.
 pub(super) struct Sheet {
-    title: &'static str,
-    heads: Vec<&'static str>,
-    lines: Vec<Line>,
-    below: Vec<String>,
+    pub(super) title: String,
+    pub(super) heads: Vec<Head>,
+    pub(super) lines: Vec<Line>,
+    pub(super) below: Vec<String>,
 }
 
-/// Longest line of a strategy's name on a terminal; with it the widest table stays within 140 columns.
+impl Head {
+    /// Of texts, which stand on the left.
+    pub(super) fn left(text: &str) -> Self {
+        Self { text: text.to_owned(), left: true }
+    }
+
+    /// Of figures, which stand on the right.
+    pub(super) fn right(text: &str) -> Self {
+        Self { text: text.to_owned(), left: false }
+    }
+}
+
+/// Columns of a terminal that all is made to fit.
+pub(super) const WIDTH: usize = 140;
+/// Longest line of a strategy's name on a terminal; with it the widest table stays within [`WIDTH`].
 const NAME_WIDTH: usize = 22;
 
 impl Sheet {
     /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its reason.
-    pub(super) fn new(title: &'static str, summaries: &[&Summary], columns: &[Column], below: Vec<String>) -> Self {
+    pub(super) fn new(title: &str, summaries: &[&Summary], columns: &[Column], below: Vec<String>) -> Self {
         let lines = summaries.iter().map(|summary| {
             let cells =
                 columns.iter().map(|c| if figures::measured(summary) { (c.cell)(summary) } else { String::new() });
+            let name = Entry::Name(summary.strategy.clone(), remark(summary));
             Line {
-                strategy: summary.strategy.clone(),
-                remark: remark(summary),
-                cells: cells.collect(),
+                cells: std::iter::once(name).chain(cells.map(Entry::Text)).collect(),
                 // Floor and ceiling stand together.
-                group: figures::group(summary).min(2),
+                group: u32::from(figures::group(summary).min(2)),
             }
         });
-        Self { title, heads: columns.iter().map(|c| c.head).collect(), lines: lines.collect(), below }
+        let heads = std::iter::once(Head::left("strategy")).chain(columns.iter().map(|c| Head::right(c.head)));
+        Self { title: title.to_owned(), heads: heads.collect(), lines: lines.collect(), below }
     }
 
     /// The table in plain text.
@@ -60,43 +86,49 @@ impl Sheet {
         let style = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
         let mut table = Table::new();
         table.load_style(style).set_content_arrangement(ContentArrangement::Disabled);
-        table.set_header(std::iter::once("strategy").chain(self.heads.iter().copied()));
+        table.set_header(self.heads.iter().map(|head| &head.text));
         for (at, line) in self.lines.iter().enumerate() {
-            if at > 0 && self.lines[at - 1].group != line.group {
+            if self.is_new_group(at) {
                 table.add_row([" "]);
             }
-            let name = [folded(&line.strategy), folded(&line.remark)].join("\n").trim_end().to_owned();
-            let cells = line.cells.iter().map(|c| Cell::new(c).set_alignment(CellAlignment::Right));
-            table.add_row(std::iter::once(Cell::new(name)).chain(cells));
+            table.add_row(line.cells.iter().zip(&self.heads).map(|(entry, head)| match entry {
+                Entry::Name(name, remark) => Cell::new([folded(name), folded(remark)].join("\n").trim_end()),
+                Entry::Text(text) if head.left => Cell::new(folded(text)),
+                Entry::Text(text) => Cell::new(text).set_alignment(CellAlignment::Right),
+            }));
         }
-        for column in table.column_iter_mut().skip(1) {
+        for (column, _) in table.column_iter_mut().zip(&self.heads).filter(|(_, head)| !head.left) {
             column.set_cell_alignment(CellAlignment::Right);
         }
         let mut text = format!("{}\n\n{}\n", self.title, table.trim_fmt());
         if !self.below.is_empty() {
             text.push('\n');
         }
-        self.below.iter().for_each(|note| _ = writeln!(text, " {note}"));
+        let lines = self.below.iter().flat_map(|note| broken(note, WIDTH - 1));
+        lines.for_each(|line| _ = writeln!(text, " {line}"));
         text
     }
 
     /// The table in GitHub's Markdown, under a heading of `level`, 1 to 6.
     pub(super) fn markdown(&self, level: usize) -> String {
-        let mut text = format!("{} {}\n\n| strategy |", "#".repeat(level), self.title);
-        self.heads.iter().for_each(|head| _ = write!(text, " {} |", head.replace('\n', "<br>")));
-        text.push_str("\n|:--|");
-        self.heads.iter().for_each(|_| text.push_str("--:|"));
+        let mut text = format!("{} {}\n\n|", "#".repeat(level), self.title);
+        self.heads.iter().for_each(|head| _ = write!(text, " {} |", head.text.replace('\n', "<br>")));
+        text.push_str("\n|");
+        self.heads.iter().for_each(|head| text.push_str(if head.left { ":--|" } else { "--:|" }));
         text.push('\n');
         for (at, line) in self.lines.iter().enumerate() {
-            if at > 0 && self.lines[at - 1].group != line.group {
-                _ = writeln!(text, "|{}", " |".repeat(self.heads.len() + 1));
+            if self.is_new_group(at) {
+                _ = writeln!(text, "|{}", " |".repeat(self.heads.len()));
             }
-            _ = write!(text, "| `{}`", line.strategy.replace('|', "\\|"));
-            if !line.remark.is_empty() {
-                _ = write!(text, "<br>{}", line.remark.replace('|', "\\|"));
+            text.push('|');
+            for entry in &line.cells {
+                _ = match entry {
+                    Entry::Name(name, remark) if remark.is_empty() => write!(text, " `{}` |", escaped(name)),
+                    Entry::Name(name, remark) => write!(text, " `{}`<br>{} |", escaped(name), escaped(remark)),
+                    Entry::Text(cell) => write!(text, " {} |", escaped(cell)),
+                };
             }
-            line.cells.iter().for_each(|cell| _ = write!(text, " | {cell}"));
-            text.push_str(" |\n");
+            text.push('\n');
         }
         self.below.iter().for_each(|note| _ = write!(text, "\n- {note}"));
         if !self.below.is_empty() {
@@ -104,6 +136,31 @@ impl Sheet {
         }
         text
     }
+
+    fn is_new_group(&self, at: usize) -> bool {
+        at > 0 && self.lines[at - 1].group != self.lines[at].group
+    }
+}
+
+/// `text` in lines of at most `width` where words allow it; further lines are indented.
+pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            Some(_) => lines.push(format!("  {word}")),
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// What Markdown would take for the end of a cell, marked as none.
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|")
 }
 
 /// What is to be said of a strategy in words; empty for most.

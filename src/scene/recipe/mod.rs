@@ -43,6 +43,8 @@ pub struct Overrides {
     pub resolution: Option<(u32, u32)>,
     /// Exposure value at ISO 100.
     pub ev100: Option<f32>,
+    /// Lights of the generated city, at the recipe's density: its extent grows with them about the same middle.
+    pub lights: Option<u64>,
 }
 
 /// Larger files are refused: 16 MiB hold about 200,000 lights written by hand.
@@ -109,7 +111,10 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     let ev100 = top.number("ev100", -30.0..=40.0, "EV at ISO 100")?.map(|ev| ev as f32);
     let frame = top.vector("origin", 1e12)?.unwrap_or(DVec3::ZERO);
 
-    let grown = top.table("city")?.map(|table| grow(&table, seed)).transpose()?;
+    let grown = top.table("city")?.map(|table| grow(&table, seed, overrides.lights)).transpose()?;
+    if grown.is_none() && overrides.lights.is_some() {
+        return Err(top.missing("city", "a generated city, whose number of lights is to be changed,"));
+    }
     let by_hand = Surfaces::read(&top, grown.as_ref())?;
     let lights = lights::read(&top)?;
     let strings = read_bulbs(&top)?;
@@ -178,9 +183,10 @@ fn scene_name(top: &Table) -> Result<String> {
     ))
 }
 
-fn grow(table: &Table, seed: u64) -> Result<Grown> {
+fn grow(table: &Table, seed: u64, lights: Option<u64>) -> Result<Grown> {
     let mut plan = City::default();
     table.fill(&mut plan)?;
+    plan.lights = lights.unwrap_or(plan.lights);
     city::generate(&plan, seed).map_err(|error| match error {
         // The plan was read from this file: say where.
         Error::Parameter { owner, name, value, expected } => {

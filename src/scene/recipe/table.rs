@@ -96,7 +96,7 @@ impl<'a> Table<'a> {
         Err(self.source.error(Some(key.span().start), &self.path_of(key.get_ref()), message))
     }
 
-    fn missing(&self, name: &str, what: &str) -> Error {
+    pub(super) fn missing(&self, name: &str, what: &str) -> Error {
         self.source.error(self.at, &self.path_of(name), format!("is missing; {what} is asked for"))
     }
 

@@ -1,0 +1,115 @@
+//! `citylights study`: the experiments behind results/.
+
+use super::compare::{CACHE, seconds};
+use super::progress::Progress;
+use super::scene::{pool, resolution, threads};
+use super::{Outcome, command, print, say};
+use crate::base::error::{Error, Result};
+use crate::measure::environment;
+use crate::record::store::create_folder;
+use crate::report;
+use crate::scene::recipe::Overrides;
+use crate::study::{Entry, Options, STUDIES, find};
+use clap::Args;
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The study, or `all`: see `citylights list studies`
+    #[arg(value_name = "NAME|all")]
+    name: String,
+    /// The strategies, with parameters if any, instead of the study's own
+    #[arg(long, short, value_name = "A,B")]
+    strategies: Option<String>,
+    /// Recipes instead of the study's own; may be given more than once (`strategies`, `scaling`)
+    #[arg(long = "scene", value_name = "FILE")]
+    scenes: Vec<PathBuf>,
+    /// Seed of the cities, instead of the recipes'
+    #[arg(long, value_name = "N")]
+    scene_seed: Option<u64>,
+    /// Pixels across and down, instead of the recipes'
+    #[arg(long, value_name = "WxH", value_parser = resolution)]
+    resolution: Option<(u32, u32)>,
+    /// Receivers drawn by area of street and facade, for what needs no rays (`strategies`)
+    #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
+    receivers: u32,
+    /// Receivers that errors are taken over
+    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pixels: u32,
+    /// Passes of a run
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    passes: u32,
+    /// Most CPU seconds of a strategy in a run: one that cannot do all passes in them does fewer
+    #[arg(long, value_name = "S", default_value = "2", value_parser = seconds)]
+    seconds: f64,
+    /// Independent runs
+    #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
+    repeats: u32,
+    /// Most lights of a series of growing scenes (`cutoff`, `scaling`)
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    max_lights: u64,
+    /// The result folder; a new one under results/ by default. With `all`, each study gets a folder in it
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Folder of finished tiles of references
+    #[arg(long, value_name = "DIR", default_value = CACHE)]
+    cache: PathBuf,
+    /// Seed of the random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads, and runs side by side, each on one of them; 2 by default, or the number of cores where that is less
+    #[arg(long, value_parser = threads)]
+    threads: Option<u32>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+    let all = arguments.name == "all";
+    let studies = if all { STUDIES.to_vec() } else { vec![find(&arguments.name)?] };
+    let progress = Progress::new()?;
+    let options = options(arguments);
+    pool(Some(options.threads as u32))?.install(|| {
+        for study in studies {
+            progress.scene(study.name);
+            let made = OnceCell::new();
+            let folder = || {
+                let folder = folder(arguments, &study, all)?;
+                say(&format!("study {}: rows go to {}", study.name, folder.display()));
+                Ok(made.get_or_init(|| folder).clone())
+            };
+            let finished = study.run(&options, command(), &folder, &progress)?;
+            print(&format!("{}\n", report::study_text(&finished)))?;
+            made.get().map_or(Ok(Vec::new()), |folder| report::report(folder))?;
+            say(&format!("study {}: {:.0} s", study.name, finished.record.wall_s));
+        }
+        Ok(Outcome::Done)
+    })
+}
+
+fn options(arguments: &Arguments) -> Options {
+    let overrides = Overrides { seed: arguments.scene_seed, resolution: arguments.resolution, ..Overrides::default() };
+    Options {
+        scenes: arguments.scenes.clone(),
+        overrides,
+        strategies: arguments.strategies.clone(),
+        receivers: arguments.receivers as usize,
+        pixels: arguments.pixels as usize,
+        passes: arguments.passes,
+        seconds: arguments.seconds,
+        repeats: arguments.repeats,
+        max_lights: arguments.max_lights,
+        seed: arguments.seed,
+        threads: arguments.threads.unwrap_or_else(|| environment::cores().min(2)) as usize,
+        cache: arguments.cache.clone(),
+    }
+}
+
+fn folder(arguments: &Arguments, study: &Entry, all: bool) -> Result<PathBuf> {
+    let Some(out) = &arguments.out else {
+        let name = format!("study-{}", study.name);
+        return create_folder(Path::new("results"), &environment::date(), &name, &environment::revision());
+    };
+    let folder = if all { out.join(study.name) } else { out.clone() };
+    std::fs::create_dir_all(&folder).map_err(Error::io("create", &folder))?;
+    Ok(folder)
+}

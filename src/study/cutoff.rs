@@ -1,0 +1,317 @@
+//! What does a hard cut-off cost, in light and in time, and what do its unbiased relatives?
+//!
+//! Against the number of lights, and against how open the scene is: a plane of equal lamps seen by a facade, where the loss has a
+//! closed form; a city without its buildings; the same city, the same lamps and the same receivers with them.
+
+use super::area::by_area;
+use super::plane::{closed_form, plane};
+use super::quality::unshadowed;
+use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
+use super::timing::{self, Timing};
+use super::{Entry, Session};
+use crate::base::error::{Error, Result};
+use crate::measure::errors::Truth;
+use crate::measure::plan::Budget;
+use crate::measure::target::Target;
+use crate::measure::trials::Trials;
+use crate::record::study::{Cell, Format, PlotRecord, Study, TableRecord};
+use crate::record::study_store::StudyWriter;
+use crate::record::{Interval, Summary};
+use crate::render::exact::exact;
+use crate::scene::camera::Camera;
+use crate::scene::city::buildings::Buildings;
+use crate::scene::city::lamps::{LampKind, Lamps};
+use crate::scene::city::{self, City, Grown};
+use crate::scene::influence::{Cutoff, Transfer};
+use crate::scene::receiver::Receiver;
+use crate::scene::{Parts, Scene};
+use crate::strategy::BuildContext;
+use crate::strategy::registry::{self, Configured};
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "cutoff",
+    question: "What does a hard cut-off cost, in light and in time, and what do its unbiased relatives?",
+    run,
+};
+
+/// Cut-offs of the closed form: displayed steps and the display's curve.
+const CUTOFFS: [(f32, Transfer); 4] =
+    [(2.0, Transfer::Linear), (0.5, Transfer::Linear), (0.125, Transfer::Linear), (0.5, Transfer::Srgb)];
+
+/// The cut-off and its relatives.
+const STRATEGIES: &str = "influence:cutoff=2,influence,influence:cutoff=0.125,influence:transfer=srgb,influence-pick,\
+                          influence-tail,stochastic-cull:draw=pass,stochastic-cull:draw=receiver";
+
+/// Least lights of a series: fewer have no far ones.
+const FEWEST: u64 = 1_000;
+/// Most lamps of a city: buildings of more take minutes to build.
+const MOST_IN_CITIES: u64 = 100_000;
+
+/// The kinds of scene, the most open first: the table's name and its title.
+const OPENNESS: [(&str, &str); 3] = [
+    ("plane", "a plane of equal lamps, seen by a facade"),
+    ("open-city", "a city without its buildings"),
+    ("city", "the same city with its buildings"),
+];
+
+fn run(session: &Session<'_>) -> Result<Study> {
+    let strategies = registry::parse_list(session.options.strategies.as_deref().unwrap_or(STRATEGIES))?;
+    let biased: Vec<String> = strategies
+        .iter()
+        .filter(|s| !unbiased(&crate::measure::summary::blank(s)))
+        .map(|s| s.name().to_owned())
+        .collect();
+    let mut tables = vec![law_table()];
+    tables.extend(OPENNESS.map(|(name, title)| bias_table(session, name, title, &biased)));
+    let mut writer = session.open(tables)?;
+    for lights in sizes(FEWEST, session.options.max_lights) {
+        in_the_plane(session, &mut writer, &strategies, lights)?;
+        if lights <= MOST_IN_CITIES {
+            in_the_city(session, &mut writer, &strategies, lights)?;
+        }
+    }
+    writer.note("All lights are points: the truth is an exact sum over all of them, a shadow ray each.".into());
+    writer.note(format!(
+        "Cities: street lamps alone, bare points 30 m apart, 5,000 to 9,000 lm, EV100 {EV100}; receivers by area, half on streets, half on \
+         facades, which stay where they are where the buildings are taken away."
+    ));
+    session.finish(writer)
+}
+
+/// Powers of ten from `fewest` to `most`, and `most` itself where it is less than `fewest`.
+pub(super) fn sizes(fewest: u64, most: u64) -> Vec<u64> {
+    let powers = (0..).map(|power| fewest * 10u64.pow(power)).take_while(|&lights| lights <= most);
+    let powers: Vec<u64> = powers.collect();
+    if powers.is_empty() { vec![most] } else { powers }
+}
+
+fn law_table() -> TableRecord {
+    let mut loss = plot(
+        "law",
+        "light lost in a plane of lamps",
+        "strategy",
+        ("lights", "lamps"),
+        ("lost", "displayed value (1 is full white)"),
+    );
+    loss.y.logarithmic = false;
+    loss.beside = vec![("closed_form".into(), ", closed form".into())];
+    TableRecord {
+        name: "law".into(),
+        title: "light lost in a plane of equal lamps, by a facade in its midst".into(),
+        columns: vec![
+            column("lights", "lamps", Format::Whole),
+            column("strategy", "strategy", Format::Name),
+            column("radius_m", "city radius,\nm", Format::Number),
+            column("range_m", "range,\nm", Format::Number),
+            column("listed", "lamps\nin range", Format::Number),
+            column("lost_share", "light lost,\n%", Format::Percent),
+            column("lost", "lost, displayed\n(1: full white)", Format::Number),
+            column("closed_form", "closed\nform", Format::Number),
+            column("ratio", "ratio", Format::Number),
+        ],
+        notes: vec![
+            "closed form: 2 n_c eps ln(R / r_c) / pi, with n_c lamps within the range r_c, eps the displayed value at which it ends, R \
+             the city's radius; 1/pi is what a facade sees of it on average over its directions."
+                .into(),
+            "by the lists alone: every lamp in range is taken with weight 1, so that the loss has no noise.".into(),
+        ],
+        plots: vec![loss],
+    }
+}
+
+fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String]) -> TableRecord {
+    let options = session.options;
+    let mut columns = vec![
+        column("lights", "lights", Format::Whole),
+        column("strategy", "strategy", Format::Name),
+        column("claim", "claim", Format::Words),
+        column("passes", "passes", Format::Whole),
+        column("picks_a_sample", "picks\na sample", Format::Number),
+        column("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds),
+    ];
+    columns.extend(interval("lost_share", "light lost,\n%", Format::Percent));
+    columns.extend(interval("rel_mse", "relMSE", Format::Number));
+    columns.extend(interval("rel_bias2", "b²", Format::Number));
+    columns.extend([
+        column("variance_cpu_s", "V", Format::Number),
+        column("balance_cpu_s", "t*, s", Format::Number),
+        column("remark", "", Format::Words),
+    ]);
+    let curves = |what: &str, title: String, y: (&str, &str)| -> PlotRecord {
+        let mut plot = plot(&format!("{name}-{what}"), &title, "strategy", ("lights", "lights"), y);
+        plot.biased = biased.to_vec();
+        plot
+    };
+    let mut lost = curves("lost", format!("light lost: {title}"), ("lost_share", "share of all light"));
+    lost.y.logarithmic = false;
+    let time = curves("time", format!("time: {title}"), ("cpu_s_a_sample", "CPU s a sample"));
+    TableRecord {
+        name: name.into(),
+        title: format!("bias and time: {title}"),
+        columns,
+        notes: vec![
+            format!(
+                "{} receivers, {} runs of {} passes each (fewer where they take more than {} CPU s).",
+                options.pixels, options.repeats, options.passes, options.seconds
+            ),
+            "b² is squared bias in units of relMSE, V variance x CPU seconds; from t* = V / b² on, bias outweighs noise (0: from the start)."
+                .into(),
+            timing::note("a frame of 240 x 135 pixels"),
+        ],
+        plots: vec![lost, time],
+    }
+}
+
+/// The law and the strategies in the plane.
+fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[Configured], lights: u64) -> Result<()> {
+    let plane = plane(lights, session.options.pixels, session.options.seed)?;
+    let stage = Stage::new(plane.scene, LeaveOut::No, Offset::SCALED);
+    for (steps, transfer) in CUTOFFS {
+        session.watch.check()?;
+        let slope = if transfer == Transfer::Srgb { 12.92 } else { 1.0 };
+        let curve = if transfer == Transfer::Srgb { "srgb" } else { "linear" };
+        let strategy = registry::parse(&format!("influence:cutoff={steps},transfer={curve}"))?;
+        let sampler = strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?;
+        let range = Cutoff::new(stage.scene(), steps, transfer).volume(&stage.scene().lights()[0]);
+        let range = range.map_or(f64::INFINITY, |volume| f64::from(volume.radius2).sqrt());
+        let lost: Vec<[f64; 3]> = plane
+            .receivers
+            .par_iter()
+            .map_init(Vec::new, |counts, at| {
+                counts.clear();
+                counts.resize(stage.scene().lights().len(), 0.0f32);
+                sampler.expected_counts(at, counts);
+                let each = stage.scene().lights().iter().zip(&*counts);
+                each.fold([0.0; 3], |[listed, lost, all], (light, &count)| {
+                    let f = unshadowed(light, at);
+                    [listed + f64::from(count), lost + if count == 0.0 { f } else { 0.0 }, all + f]
+                })
+            })
+            .collect();
+        let mean = |of: usize| lost.iter().map(|lost| lost[of]).sum::<f64>() / lost.len() as f64;
+        // Exposure is 1 and all is grey: luminance is displayed value.
+        let closed = closed_form(range, f64::from(steps) / 255.0 / slope, plane.radius);
+        writer.row(
+            "law",
+            vec![
+                (stage.scene().lights().len() as u64).into(),
+                strategy.name().into(),
+                plane.radius.into(),
+                range.into(),
+                mean(0).into(),
+                (mean(1) / mean(2)).into(),
+                mean(1).into(),
+                closed.into(),
+                (mean(1) / closed).into(),
+            ],
+        )?;
+    }
+    try_all(session, writer, OPENNESS[0].0, &stage, &plane.receivers, strategies)
+}
+
+/// The strategies in a city with and without its buildings.
+fn in_the_city(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[Configured], lights: u64) -> Result<()> {
+    let options = session.options;
+    let plan = |buildings| City {
+        lights,
+        density: DENSITY,
+        lamps: Some(Lamps { kind: LampKind::Point, ..Lamps::default() }),
+        buildings,
+        ..City::default()
+    };
+    let stage = |buildings| -> Result<Stage> {
+        let scene = scene(city::generate(&plan(buildings), options.seed)?, lights, options.seed)?;
+        Ok(Stage::new(scene, LeaveOut::No, Offset::SCALED))
+    };
+    let (open, built) = (stage(None)?, stage(Some(Buildings::default()))?);
+    if open.scene().lights() != built.scene().lights() {
+        return Err(Error::Invalid("the city's lamps depend on its buildings: the two cannot be compared".into()));
+    }
+    let receivers = by_area(built.scene(), built.occluders(), options.pixels, options.seed)?.receivers;
+    try_all(session, writer, OPENNESS[1].0, &open, &receivers, strategies)?;
+    try_all(session, writer, OPENNESS[2].0, &built, &receivers, strategies)
+}
+
+/// Receivers of a frame that share the state of a pass: an image of 240 x 135 pixels.
+const FRAME: usize = 240 * 135;
+
+/// Lights per km^2 of a city that has lamps alone, about.
+const DENSITY: f64 = 1_000.0;
+/// Exposure of the cities, as of `scenes/downtown.toml`.
+const EV100: f32 = 3.5;
+
+fn scene(grown: Grown, lights: u64, seed: u64) -> Result<Scene> {
+    Scene::new(Parts {
+        name: format!("lamps-{lights}"),
+        seed,
+        origin: DVec3::ZERO,
+        lights: grown.lights,
+        groups: grown.groups,
+        surfaces: grown.surfaces,
+        materials: grown.materials,
+        // Nothing is seen through it: receivers are drawn by area.
+        camera: Camera::new(Vec3::new(0.0, 0.0, 2.0), Vec3::new(0.0, 1.0, 2.0), 60.0, 1, 1)?,
+        ev100: Some(EV100),
+        notes: grown.notes,
+    })
+}
+
+fn try_all(
+    session: &Session<'_>,
+    writer: &mut StudyWriter,
+    table: &str,
+    stage: &Stage,
+    receivers: &[Receiver],
+    strategies: &[Configured],
+) -> Result<()> {
+    let options = session.options;
+    session.watch.begin(&format!("{table}: {} lights", stage.scene().lights().len()), 1);
+    let target = Target::of(stage, receivers.to_vec());
+    let sum = |at: &Receiver| exact(stage, at, 0, 0).sum.as_vec3();
+    let sums: Vec<Vec3> = receivers.par_iter().map(sum).collect();
+    session.watch.end();
+    let truth = Truth::new([sums.clone(), sums]);
+    let trials = Trials {
+        target: &target,
+        truth: &truth,
+        budget: Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds },
+        runs: options.repeats,
+        seed: options.seed,
+        threads: options.threads,
+    };
+    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+        let timing = Timing::of(&trials, strategy, &summary, FRAME)?;
+        let mut cells = vec![(stage.scene().lights().len() as u64).into()];
+        cells.extend(bias_cells(&summary, timing, receivers.len()));
+        writer.row(table, cells)?;
+    }
+    Ok(())
+}
+
+fn bias_cells(summary: &Summary, timing: Option<Timing>, receivers: usize) -> Vec<Cell> {
+    let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
+    if measured(summary) {
+        let seconds = timing.map(|timing| timing.sample_s());
+        // V at the time that these passes take in a whole frame, for the measured receivers' share of it.
+        let share = seconds.map(|s| s * f64::from(summary.passes) * receivers as f64 / summary.cpu_s);
+        let variance = share.map(|share| summary.variance_seconds * share);
+        let lost = Interval { mean: -summary.mean_bias.mean, ..summary.mean_bias };
+        let picks = summary.counts.picks as f64 / summary.counts.samples as f64;
+        cells.extend([u64::from(summary.passes).into(), picks.into(), seconds.into()]);
+        cells.extend(both(lost));
+        cells.extend(both(summary.rel_mse));
+        let is_biased = !unbiased(summary);
+        cells.extend(if is_biased { both(summary.rel_bias2) } else { [Cell::Missing, Cell::Missing] });
+        cells.push(variance.into());
+        let outweighs = is_biased && summary.rel_bias2.mean > summary.rel_bias2.half_width;
+        cells.push(variance.filter(|_| outweighs).map(|variance| variance / summary.rel_bias2.mean).into());
+    } else {
+        cells.resize(13, Cell::Missing);
+    }
+    cells.push(remark(summary));
+    cells
+}

@@ -1,0 +1,166 @@
+//! The experiments behind `results/`: named, seeded, each with its question.
+//!
+//! A study opens its tables, fills them row by row and says in notes what a reader must know. Tables, page and plots are then made
+//! from what it recorded, as for any result.
+//!
+//! Adding one takes a file here and a line in [`STUDIES`].
+
+mod area;
+mod cutoff;
+
+pub mod fit;
+mod plane;
+
+pub mod quality;
+mod scaling;
+
+mod strategies;
+mod table;
+mod timing;
+
+use crate::base::error::{Error, Result};
+use crate::base::names;
+use crate::measure::environment;
+use crate::measure::observer::Observer;
+use crate::measure::reference::Reference;
+use crate::measure::target::Target;
+use crate::record::Machine;
+use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
+use crate::record::study_store::StudyWriter;
+use crate::scene::recipe::Overrides;
+use crate::strategy::Role;
+use crate::strategy::registry::{self, Configured, STRATEGIES};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Every study, in the order of `citylights list studies`.
+pub const STUDIES: [Entry; 3] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY];
+
+/// A study that can be named.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// Its name, as typed.
+    pub name: &'static str,
+    /// What it asks.
+    pub question: &'static str,
+    run: fn(&Session<'_>) -> Result<Study>,
+}
+
+/// What a user may change; each study reads what makes sense for it.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Recipes instead of the study's own.
+    pub scenes: Vec<PathBuf>,
+    /// What is set in place of the recipes' own words.
+    pub overrides: Overrides,
+    /// The strategies, as a list with parameters, instead of the study's own.
+    pub strategies: Option<String>,
+    /// Receivers drawn by area of street and facade, for what needs no rays.
+    pub receivers: usize,
+    /// Receivers that errors are taken over.
+    pub pixels: usize,
+    /// Passes of a run.
+    pub passes: u32,
+    /// Most CPU seconds of a run: a strategy that cannot do all passes in it does fewer.
+    pub seconds: f64,
+    /// Independent runs.
+    pub repeats: u32,
+    /// The most lights of a series of growing scenes.
+    pub max_lights: u64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Runs side by side.
+    pub threads: usize,
+    /// Folder of cached references.
+    pub cache: PathBuf,
+}
+
+/// The study of that name.
+pub fn find(name: &str) -> Result<Entry> {
+    let unknown = || Error::Unknown {
+        what: "study",
+        name: name.to_owned(),
+        near: names::near(name, STUDIES.iter().map(|entry| entry.name)),
+    };
+    STUDIES.into_iter().find(|entry| entry.name == name).ok_or_else(unknown)
+}
+
+impl Entry {
+    /// Runs the study; `command` is what was typed.
+    ///
+    /// `folder` makes the folder that it is recorded in, which must hold no study yet; it is called once all that was asked for has
+    /// been read, so that a misspelt name leaves nothing behind.
+    pub fn run(
+        &self,
+        options: &Options,
+        command: String,
+        folder: &dyn Fn() -> Result<PathBuf>,
+        watch: &dyn Observer,
+    ) -> Result<Study> {
+        (self.run)(&Session { entry: *self, options, command, folder, watch, begun: Instant::now() })
+    }
+}
+
+/// A study being run.
+struct Session<'a> {
+    entry: Entry,
+    options: &'a Options,
+    command: String,
+    folder: &'a dyn Fn() -> Result<PathBuf>,
+    watch: &'a dyn Observer,
+    begun: Instant,
+}
+
+impl Session<'_> {
+    /// Opens the study's tables.
+    fn open(&self, tables: Vec<TableRecord>) -> Result<StudyWriter> {
+        let record = StudyRecord {
+            schema: STUDY_SCHEMA,
+            study: self.entry.name.to_owned(),
+            question: self.entry.question.to_owned(),
+            command: self.command.clone(),
+            date: environment::date(),
+            revision: environment::revision(),
+            seed: self.options.seed,
+            machine: Machine { cpu: environment::cpu(), cores: environment::cores(), os: environment::os() },
+            compiler: environment::compiler(),
+            flags: environment::flags(),
+            warnings: environment::warnings(),
+            finished: false,
+            wall_s: 0.0,
+            notes: Vec::new(),
+            tables,
+        };
+        StudyWriter::create(&(self.folder)()?, record)
+    }
+
+    /// Ends the study.
+    fn finish(&self, writer: StudyWriter) -> Result<Study> {
+        writer.finish(self.begun.elapsed().as_secs_f64())
+    }
+
+    /// The recipes asked for, or `own`.
+    fn scenes(&self, own: &[&str]) -> Vec<PathBuf> {
+        if self.options.scenes.is_empty() {
+            own.iter().map(PathBuf::from).collect()
+        } else {
+            self.options.scenes.clone()
+        }
+    }
+
+    /// The strategies asked for, or every registered one that chooses, or is the floor under all that do, and `variants`.
+    fn strategies(&self, variants: &[&str]) -> Result<Vec<Configured>> {
+        if let Some(list) = &self.options.strategies {
+            return registry::parse_list(list);
+        }
+        let own = STRATEGIES.iter().map(registry::Entry::info);
+        let own = own.filter(|info| matches!(info.role, Role::Choosing | Role::Oracle)).map(|info| info.name);
+        own.chain(variants.iter().copied()).map(registry::parse).collect()
+    }
+
+    /// What the radiance of a target is, far enough below the errors that are measured against it.
+    fn reference(&self, target: &Target<'_>) -> Result<Reference> {
+        // Errors lie above 1e-3, and are taken about two halves whose own noise cancels.
+        Reference::compute(target, 1e-4, &self.options.cache, self.watch)
+    }
+}

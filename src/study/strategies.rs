@@ -1,0 +1,307 @@
+//! Which strategy chooses best: by its probabilities alone, and measured?
+//!
+//! The first needs no rays and has no noise; it knows nothing of visibility. The second is the error at a fixed number of passes, for
+//! each sample and for each second, beside those of `oracle` (which knows visibility) and `intensity` (which knows all but that).
+
+use super::area::{ByArea, by_area};
+use super::quality::{Finding, Quality, quality};
+use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
+use super::timing::{self, Timing};
+use super::{Entry, Session};
+use crate::base::error::Result;
+use crate::measure::plan::Budget;
+use crate::measure::summary::blank;
+use crate::measure::target::{Target, spread};
+use crate::measure::trials::Trials;
+use crate::record::study::{Cell, Format, Study, TableRecord};
+use crate::record::study_store::StudyWriter;
+use crate::record::{Claim, Summary, store};
+use crate::scene::Scene;
+use crate::scene::receiver::Receiver;
+use crate::scene::recipe;
+use crate::strategy::BuildContext;
+use crate::strategy::erased::AnySampler;
+use crate::strategy::registry::Configured;
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use rayon::prelude::*;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "strategies",
+    question: "Which strategy chooses best: by its probabilities alone, and measured?",
+    run,
+};
+
+/// The scenes: canyons, where visibility decides, and an open square, where it does not.
+const SCENES: [&str; 2] = ["scenes/downtown.toml", "scenes/plaza.toml"];
+
+/// Strategies beside the registered ones in their default form.
+const VARIANTS: &[&str] = &[
+    "power:points=random",
+    "stochastic-cull:draw=receiver",
+    "light-tree:arity=2,importance=classic",
+    "light-tree:arity=2,importance=classic,points=random",
+    "light-tree:arity=2",
+    "light-tree:arity=4",
+    "light-tree:distance=minmax",
+    "light-tree:far=0.02",
+    "light-tree:split=0.5",
+    "resampled:visibility=on",
+    "resampled:from=light-tree,m=4",
+    "restir:combine=1/M",
+];
+
+fn run(session: &Session<'_>) -> Result<Study> {
+    let strategies = session.strategies(VARIANTS)?;
+    let files = session.scenes(&SCENES);
+    let scenes: Vec<Scene> =
+        files.iter().map(|file| recipe::load(file, &session.options.overrides)).collect::<Result<_>>()?;
+    let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
+    for scene in scenes {
+        by_probability(session, &mut writer, scene.clone(), &strategies)?;
+        by_measuring(session, &mut writer, scene, &strategies)?;
+    }
+    session.finish(writer)
+}
+
+fn quality_table(scene: &Scene) -> String {
+    format!("quality-{}", store::file_name(scene.name()))
+}
+
+fn measured_table(scene: &Scene) -> String {
+    format!("measured-{}", store::file_name(scene.name()))
+}
+
+fn tables(session: &Session<'_>, scene: &Scene, strategies: &[Configured]) -> [TableRecord; 2] {
+    let options = session.options;
+    let quality = TableRecord {
+        name: quality_table(scene),
+        title: format!("{}: variance by probabilities, nothing in between", scene.name()),
+        columns: vec![
+            column("strategy", "strategy", Format::Name),
+            column("claim", "claim", Format::Words),
+            column("mean_variance", "mean", Format::Number),
+            column("median_variance", "median", Format::Number),
+            column("mean_variance_street", "mean,\nstreet", Format::Number),
+            column("mean_variance_facade", "mean,\nfacade", Format::Number),
+            column("picks", "picks\na call", Format::Number),
+            column("receivers", "receivers", Format::Whole),
+            column("dark_receivers", "of them dark,\nleft out", Format::Whole),
+            column("biased_receivers", "of them\nbiased", Format::Whole),
+            column("remark", "", Format::Words),
+        ],
+        notes: vec![
+            "relative variance of one pick: max(1, N) sum f²/n / (sum f)² - 1, where f is a light's unshadowed luminance at its \
+             centroid, n its expected number of picks in a call and N = sum n. Exact for a strategy that picks once; k independent \
+             picks are brought to one; of lists and splitting it is an upper bound."
+                .into(),
+            format!("mean and median over {} receivers by area, half on streets, half on facades.", options.receivers),
+            "biased: receivers at which a light that contributes is never picked (n = 0): the mean is then infinite.".into(),
+        ],
+        plots: Vec::new(),
+    };
+    let biased = strategies.iter().filter(|s| matches!(blank(s).claim, Claim::Biased { .. }));
+    let mut error_plot = plot(
+        &measured_table(scene),
+        &format!("{}: error and time of a sample", scene.name()),
+        "strategy",
+        ("cpu_s_a_sample", "CPU s a sample"),
+        ("rel_mse", "relMSE"),
+    );
+    error_plot.biased = biased.map(|s| s.name().to_owned()).collect();
+    let mut columns = vec![
+        column("strategy", "strategy", Format::Name),
+        column("claim", "claim", Format::Words),
+        column("passes", "passes", Format::Whole),
+    ];
+    columns.extend(interval("rel_mse", "relMSE", Format::Number));
+    columns.extend(interval("rel_bias2", "b²", Format::Number));
+    columns.extend([
+        column("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds),
+        column("error_passes", "relMSE\nx passes", Format::Number),
+        column("error_passes_to_oracle", "to\noracle", Format::Number),
+        column("error_passes_to_intensity", "to\nintensity", Format::Number),
+        column("error_cpu_s", "relMSE\nx CPU s", Format::Number),
+        column("error_cpu_s_to_intensity", "to\nintensity", Format::Number),
+        column("remark", "", Format::Words),
+    ]);
+    let measured = TableRecord {
+        name: measured_table(scene),
+        title: format!("{}: measured error for each sample and for each second", scene.name()),
+        columns,
+        notes: vec![
+            format!(
+                "relMSE over {} receivers of the camera in {} runs of {} passes each (fewer where they take more than {} CPU s).",
+                options.pixels, options.repeats, options.passes, options.seconds
+            ),
+            "relMSE x passes and relMSE x CPU s: lower is better. A biased strategy has none: its error does not fall as 1 / passes."
+                .into(),
+            "oracle knows what is visible and is not timed: the floor of any error. intensity is the floor without visibility.".into(),
+            "to oracle, to intensity: where both did the same number of passes. Set-up is not in the CPU seconds (see `study scaling`)."
+                .into(),
+            timing::note("all that the camera sees"),
+            "the measured receivers stand for all: a strategy that reuses its neighbours' choices (restir) finds them farther away here."
+                .into(),
+        ],
+        plots: vec![error_plot],
+    };
+    [quality, measured]
+}
+
+fn by_probability(
+    session: &Session<'_>,
+    writer: &mut StudyWriter,
+    scene: Scene,
+    strategies: &[Configured],
+) -> Result<()> {
+    let table = quality_table(&scene);
+    // Receivers by area see what the camera does not: nothing may be left out for its sake.
+    let stage = Stage::new(scene, LeaveOut::No, Offset::SCALED);
+    let by_area = by_area(stage.scene(), stage.occluders(), session.options.receivers, session.options.seed)?;
+    session.watch.begin(&table, strategies.len() as u64);
+    let mut unknown = Vec::new();
+    for strategy in strategies.iter().filter(|strategy| blank(strategy).claim != Claim::Oracle) {
+        session.watch.check()?;
+        let built = strategy.build(BuildContext { stage: &stage, seed: session.options.seed });
+        match built.map(|sampler| qualities(&stage, sampler.as_ref(), &by_area.receivers)) {
+            Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
+            Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
+            Err(error) => {
+                let mut cells = vec![strategy.name().into(), claim(&blank(strategy))];
+                cells.resize(10, Cell::Missing);
+                cells.push(format!("failed: {error}").as_str().into());
+                writer.row(&table, cells)?;
+            }
+        }
+        session.watch.advance(1);
+    }
+    session.watch.end();
+    if !unknown.is_empty() {
+        let (scene, names) = (stage.scene().name(), unknown.join(", "));
+        writer
+            .note(format!("{scene}: not in the table of variance, since their probabilities cannot be told: {names}."));
+    }
+    Ok(())
+}
+
+fn qualities(stage: &Stage, sampler: &dyn AnySampler, receivers: &[Receiver]) -> Vec<Finding> {
+    receivers.par_iter().map_init(Vec::new, |counts, at| quality(stage, sampler, at, counts)).collect()
+}
+
+fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> Vec<Cell> {
+    let known = |found: &[Finding]| -> Vec<Quality> {
+        let known = |finding: &Finding| if let Finding::Known(quality) = *finding { Some(quality) } else { None };
+        found.iter().filter_map(known).collect()
+    };
+    let mean = |of: fn(&Quality) -> f64, found: &[Finding]| {
+        let known = known(found);
+        known.iter().map(of).sum::<f64>() / known.len() as f64
+    };
+    let (street, facade) = found.split_at(by_area.streets);
+    let all = known(found);
+    let mut sorted: Vec<f64> = all.iter().map(|quality| quality.variance).collect();
+    sorted.sort_by(f64::total_cmp);
+    vec![
+        strategy.name().into(),
+        claim(&blank(strategy)),
+        mean(|quality| quality.variance, found).into(),
+        // The lower of two middle ones: between a number and infinity there is no middle.
+        sorted.get(sorted.len().saturating_sub(1) / 2).copied().into(),
+        mean(|quality| quality.variance, street).into(),
+        mean(|quality| quality.variance, facade).into(),
+        mean(|quality| quality.picks, found).into(),
+        (found.len() as u64).into(),
+        ((found.len() - all.len()) as u64).into(),
+        (all.iter().filter(|quality| quality.variance.is_infinite()).count() as u64).into(),
+        Cell::Missing,
+    ]
+}
+
+fn by_measuring(
+    session: &Session<'_>,
+    writer: &mut StudyWriter,
+    scene: Scene,
+    strategies: &[Configured],
+) -> Result<()> {
+    let options = session.options;
+    let table = measured_table(&scene);
+    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+    let target = Target::of(&stage, spread(stage.receivers(), options.pixels));
+    let reference = session.reference(&target)?;
+    let budget = Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds };
+    let trials = Trials {
+        target: &target,
+        truth: &reference.truth,
+        budget,
+        runs: options.repeats,
+        seed: options.seed,
+        threads: options.threads,
+    };
+    let frame = stage.receivers().len();
+    let mut found = Vec::new();
+    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+        let timing = Timing::of(&trials, strategy, &summary, frame)?;
+        found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
+    }
+    let receivers = target.receivers.len() as f64;
+    let (oracle, intensity) = (of(&found, "oracle"), of(&found, "intensity"));
+    for one in &found {
+        let summary = &one.summary;
+        let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
+        if measured(summary) {
+            cells.push(u64::from(summary.passes).into());
+            cells.extend(both(summary.rel_mse));
+            cells.extend(if unbiased(summary) { [Cell::Missing, Cell::Missing] } else { both(summary.rel_bias2) });
+        } else {
+            cells.resize(7, Cell::Missing);
+        }
+        cells.extend([
+            one.sample_s.into(),
+            one.error_passes().into(),
+            one.ratio(oracle, Found::error_passes).into(),
+            one.ratio(intensity, Found::error_passes).into(),
+            one.error_samples_s().map(|error| error * receivers).into(),
+            one.ratio(intensity, Found::error_samples_s).into(),
+            remark(summary),
+        ]);
+        writer.row(&table, cells)?;
+    }
+    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
+    writer.note(format!(
+        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
+        stage.scene().name(),
+        stage.scene().lights().len(),
+        stage.lights().len()
+    ));
+    Ok(())
+}
+
+/// What was found of one strategy.
+struct Found {
+    summary: Summary,
+    /// CPU seconds of a sample, where it has a time.
+    sample_s: Option<f64>,
+}
+
+impl Found {
+    /// relMSE x passes, where it means something.
+    fn error_passes(&self) -> Option<f64> {
+        let s = &self.summary;
+        (measured(s) && unbiased(s)).then(|| s.rel_mse.mean * f64::from(s.passes))
+    }
+
+    /// relMSE x passes x CPU seconds of a sample.
+    fn error_samples_s(&self) -> Option<f64> {
+        self.error_passes().zip(self.sample_s).map(|(error, seconds)| error * seconds)
+    }
+
+    /// A figure as a multiple of another strategy's at the same number of passes: points spread over passes lower it as they grow.
+    fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<f64>) -> Option<f64> {
+        let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
+        figure(self).zip(figure(to)).map(|(own, other)| own / other)
+    }
+}
+
+fn of<'a>(found: &'a [Found], strategy: &str) -> Option<&'a Found> {
+    found.iter().find(|one| one.summary.strategy == strategy)
+}

@@ -1,0 +1,66 @@
+//! How a study writes down its tables: short words for columns, axes and plots.
+
+use crate::record::Summary;
+use crate::record::study::{AxisRecord, Cell, ColumnRecord, Format, PlotRecord};
+use crate::record::{Claim, Interval};
+
+/// A column `name` of the file under the head `head` of the page.
+pub(super) fn column(name: &str, head: &str, format: Format) -> ColumnRecord {
+    ColumnRecord { name: name.to_owned(), head: head.to_owned(), format }
+}
+
+/// A column of figures and one of half their 95 % intervals.
+pub(super) fn interval(name: &str, head: &str, format: Format) -> [ColumnRecord; 2] {
+    [column(name, head, format), column(&format!("{name}_half_width"), "", Format::HalfWidth)]
+}
+
+/// A log-log plot of the column `y` over the column `x`, a curve for each value of `series`.
+pub(super) fn plot(name: &str, title: &str, series: &str, x: (&str, &str), y: (&str, &str)) -> PlotRecord {
+    let axis = |(column, label): (&str, &str)| AxisRecord {
+        column: column.to_owned(),
+        label: label.to_owned(),
+        logarithmic: true,
+    };
+    PlotRecord {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        series: series.to_owned(),
+        x: axis(x),
+        y: axis(y),
+        beside: Vec::new(),
+        biased: Vec::new(),
+    }
+}
+
+/// The two cells of an interval.
+pub(super) fn both(interval: Interval) -> [Cell; 2] {
+    [interval.mean.into(), interval.half_width.into()]
+}
+
+/// What a strategy says of itself.
+pub(super) fn claim(summary: &Summary) -> Cell {
+    match summary.claim {
+        Claim::Unbiased => "unbiased",
+        Claim::Biased { .. } => "biased",
+        Claim::Floor => "floor",
+        Claim::Ceiling => "ceiling",
+        Claim::Oracle => "oracle",
+    }
+    .into()
+}
+
+/// Why a strategy has no figures; missing where it has.
+pub(super) fn remark(summary: &Summary) -> Cell {
+    let failed = summary.error.as_ref().map(|error| format!("failed: {error}"));
+    failed.or_else(|| summary.skipped.clone()).as_deref().into()
+}
+
+/// Whether a strategy was measured.
+pub(super) fn measured(summary: &Summary) -> bool {
+    summary.error.is_none() && summary.skipped.is_none() && summary.runs > 0
+}
+
+/// Whether a strategy is right on average by its own claim.
+pub(super) fn unbiased(summary: &Summary) -> bool {
+    !matches!(summary.claim, Claim::Biased { .. })
+}

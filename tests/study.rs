@@ -1,0 +1,403 @@
+//! Promise: a study records typed tables that its page and plots follow from alone, and what it says holds.
+#![cfg(feature = "study")]
+
+mod common;
+
+use citylights::base::colour::luminance;
+use citylights::base::random::RunKey;
+use citylights::base::statistics::Moments;
+use citylights::measure::observer::{Observer, Unobserved};
+use citylights::record::Machine;
+use citylights::record::study::{
+    AxisRecord, Cell, ColumnRecord, Format, PlotRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord,
+};
+use citylights::record::study_store::{STUDY_FILE, StudyWriter, read_study};
+use citylights::report::{self, Drift};
+use citylights::scene::receiver::Receiver;
+use citylights::scene::recipe::Overrides;
+use citylights::shading::contribution::contribution;
+use citylights::strategy::erased::{Frame, PickBuffer};
+use citylights::study::quality::{Finding, quality};
+use citylights::study::{self, Options};
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::LeaveOut;
+use common::{ground, point, receiver, sampler, spot, stage_with};
+use glam::Vec3;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn number(name: &str, format: Format) -> ColumnRecord {
+    ColumnRecord { name: name.to_owned(), head: name.replace('_', "\n"), format }
+}
+
+/// A study with a column of every format.
+fn record() -> StudyRecord {
+    let axis =
+        |column: &str, logarithmic| AxisRecord { column: column.into(), label: format!("{column}!"), logarithmic };
+    let formats = [
+        ("lights", Format::Whole),
+        ("strategy", Format::Name),
+        ("heap_bytes", Format::Bytes),
+        ("error", Format::Number),
+        ("error_half_width", Format::HalfWidth),
+        ("lost_share", Format::Percent),
+        ("setup_cpu_s", Format::Milliseconds),
+        ("cpu_s_a_sample", Format::Nanoseconds),
+        ("remark", Format::Words),
+    ];
+    StudyRecord {
+        schema: STUDY_SCHEMA,
+        study: "growth".into(),
+        question: "What grows?".into(),
+        command: "citylights study growth".into(),
+        date: "2026-11-25".into(),
+        revision: "67eec73".into(),
+        seed: 1,
+        machine: Machine { cpu: "a processor".into(), cores: 2, os: "an OS".into() },
+        compiler: "rustc 1.95.0".into(),
+        flags: "release".into(),
+        warnings: Vec::new(),
+        finished: false,
+        wall_s: 0.0,
+        notes: vec!["as of today".into()],
+        tables: vec![TableRecord {
+            name: "growth".into(),
+            title: "growth with lights".into(),
+            columns: formats.map(|(name, format)| number(name, format)).to_vec(),
+            notes: vec!["error: relative".into()],
+            plots: vec![PlotRecord {
+                name: "error".into(),
+                title: "error against lights".into(),
+                series: "strategy".into(),
+                x: axis("lights", true),
+                y: axis("error", false),
+                beside: vec![("lost_share".into(), ", lost".into())],
+                biased: vec!["influence".into()],
+            }],
+        }],
+    }
+}
+
+fn rows() -> Vec<Vec<Cell>> {
+    let row = |lights: u64, strategy: &str, error: f64, remark: &str| {
+        let figures = [error, 0.1 * error, 0.123, 4.56e-3, 7.89e-8].map(Cell::from);
+        let before = [lights.into(), strategy.into(), (100 * lights).into()];
+        before.into_iter().chain(figures).chain([remark.into()]).collect()
+    };
+    let mut rows: Vec<Vec<Cell>> = vec![
+        row(100, "power:picks=2", 0.5, ""),
+        row(100, "influence", f64::INFINITY, "two\nlines, \"quoted\""),
+        row(1_000, "power:picks=2", 1.0 / 3.0, ""),
+        row(1_000, "influence", 0.25, ""),
+    ];
+    rows[3][6] = Cell::Missing;
+    rows
+}
+
+fn made(folder: &Path) -> Study {
+    let mut writer = StudyWriter::create(folder, record()).expect("begun");
+    rows().into_iter().for_each(|cells| writer.row("growth", cells).expect("written"));
+    writer.note("and a note from its end".into());
+    writer.finish(1.5).expect("finished")
+}
+
+#[test]
+fn the_record_and_its_page_are_the_recorded_ones() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let study = made(folder.path());
+    report::report(folder.path()).expect("written");
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("read");
+    // A change of the first two is a change of schema: raise `STUDY_SCHEMA` with it.
+    insta::assert_snapshot!("study_schema_1_json", read(STUDY_FILE));
+    insta::assert_snapshot!("study_schema_1_csv", read("growth.csv"));
+    insta::assert_snapshot!("study_page", read("growth.md"));
+    insta::assert_snapshot!("study_terminal", report::study_text(&study));
+    let plot = read("growth-error.svg");
+    for part in ["error against lights", "lights!", "error!", "power", "picks=2, lost", "dashed and hollow: biased"] {
+        assert!(plot.contains(part), "{part}");
+    }
+    assert!(!plot.contains("NaN") && !plot.contains("inf\n"), "what no axis can show is left out");
+}
+
+#[test]
+fn a_study_comes_back_as_it_was_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let study = made(folder.path());
+    assert_eq!(read_study(folder.path()).expect("read"), study);
+    let again = StudyWriter::create(folder.path(), record()).err().expect("refused").to_string();
+    assert!(again.contains("never overwritten"), "{again}");
+}
+
+#[test]
+fn an_interrupted_study_keeps_its_rows_and_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut writer = StudyWriter::create(folder.path(), record()).expect("begun");
+    let [first, second, ..] = &rows()[..] else { panic!("four rows") };
+    writer.row("growth", first.clone()).expect("written");
+    writer.row("growth", second.clone()).expect("written");
+    drop(writer);
+    let file = folder.path().join("growth.csv");
+    let text = fs::read_to_string(&file).expect("read");
+    fs::write(&file, &text[..text.len() - 1]).expect("cut");
+    let study = read_study(folder.path()).expect("read");
+    assert_eq!(study.rows, [[first.clone()]], "the line that was cut short is left out");
+    assert!(report::study_text(&study).contains("warning: not finished: some rows are missing"));
+}
+
+#[test]
+fn a_cell_that_cannot_be_read_is_named_by_file_line_and_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    made(folder.path());
+    let file = folder.path().join("growth.csv");
+    let whole = fs::read_to_string(&file).expect("read");
+    for (from, to, expected) in [
+        ("0.5,", "half,", "growth.csv:2: `error`: `half` is not a number"),
+        ("\n100,", "\n-1,", "growth.csv:2: `lights`: `-1` is not a whole number"),
+        ("\n100,", "\n100,100,", "growth.csv:2: 10 fields where 9 are expected"),
+        ("heap_bytes", "heap", "growth.csv:1: column `heap` stands where study.json has `heap_bytes`"),
+    ] {
+        fs::write(&file, whole.replacen(from, to, 1)).expect("written");
+        let error = read_study(folder.path()).expect_err("not a row").to_string();
+        assert!(error.ends_with(expected), "{error}");
+    }
+}
+
+#[test]
+fn a_section_points_to_the_plots_of_its_folder() {
+    let results = tempfile::tempdir().expect("a folder");
+    let folder = results.path().join("2026-11-25-study-growth-67eec73");
+    fs::create_dir(&folder).expect("made");
+    made(&folder);
+    let sections = report::sections(&folder, &results.path().join("README.md")).expect("read");
+    let [section] = &sections[..] else { panic!("one section") };
+    assert_eq!(section.name, "study growth");
+    for part in [
+        "## study growth\n",
+        "](2026-11-25-study-growth-67eec73/growth-error.svg)",
+        "Made by `citylights study growth`",
+    ] {
+        assert!(section.body.contains(part), "{part}\n{}", section.body);
+    }
+}
+
+/// A street between two facades with lamps and a sign, in a folder of its own.
+const STREET: &str = r#"
+name = "street"
+seed = 1
+version = 1
+ev100 = 3.0
+camera = { position = [0, -12, 3], target = [0, 0, 2], resolution = [24, 16] }
+ground = { size = 40, material = "paving" }
+materials.paving = { albedo = [0.3, 0.3, 0.3], street = true }
+box = [
+    { low = [-12, -15, 0], high = [-6, 15, 8], material = "plaster" },
+    { low = [6, -15, 0], high = [12, 15, 8], material = "brick" },
+]
+light = [
+    { kind = "point", position = [0, -8, 6], intensity = 200 },
+    { kind = "point", position = [0, 0, 6], intensity = 200 },
+    { kind = "point", position = [0, 8, 6], intensity = 200 },
+    { kind = "spot", position = [-5, 4, 7], target = [0, 4, 0], inner = 20, outer = 60, flux = 4000, kelvin = 3000 },
+]
+"#;
+
+fn options(folder: &Path, strategies: &str) -> Options {
+    Options {
+        scenes: Vec::new(),
+        overrides: Overrides::default(),
+        strategies: Some(strategies.to_owned()),
+        receivers: 60,
+        pixels: 32,
+        passes: 4,
+        seconds: 2.0,
+        repeats: 3,
+        max_lights: 1_000,
+        seed: 1,
+        threads: 2,
+        cache: folder.join("cache"),
+    }
+}
+
+/// Runs a study, checks that its derived files follow from its cells, and that a changed cell is noticed.
+fn ran(name: &str, options: &Options, folder: &Path) -> Study {
+    let out = folder.join(name);
+    let make = || {
+        fs::create_dir(&out).expect("made once");
+        Ok::<PathBuf, _>(out.clone())
+    };
+    let study = study::find(name).expect("known").run(options, format!("citylights study {name}"), &make, &Unobserved);
+    let study = study.expect("finished");
+    report::report(&out).expect("written");
+    assert_eq!(report::check(&out).expect("checked"), []);
+    assert_eq!(read_study(&out).expect("read"), study);
+    assert!(study.record.finished && study.record.wall_s > 0.0);
+    for (table, rows) in study.record.tables.iter().zip(&study.rows) {
+        assert!(!rows.is_empty(), "table `{}` is empty", table.name);
+    }
+
+    // A number in the last row of the first table, made another one.
+    let table = &study.record.tables[0];
+    let file = out.join(format!("{}.csv", table.name));
+    let text = fs::read_to_string(&file).expect("read");
+    let at = table.columns.iter().position(|c| c.format == Format::Number).expect("a number");
+    let last = text.trim_end().rfind('\n').expect("lines") + 1;
+    let mut fields: Vec<&str> = text[last..].trim_end().split(',').collect();
+    fields[at] = "123.456";
+    fs::write(&file, format!("{}{}\n", &text[..last], fields.join(","))).expect("written");
+    let drifts = report::check(&out).expect("checked");
+    assert!(
+        matches!(&drifts[..], [Drift::Differs { file, .. }, ..] if file.ends_with(format!("{name}.md"))),
+        "{drifts:?}"
+    );
+    study
+}
+
+/// The cells of a strategy's row in the table of that name.
+fn cells<'a>(study: &'a Study, table: &str, strategy: &str, column: &str) -> Vec<&'a Cell> {
+    let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");
+    let (record, rows) = (&study.record.tables[at], &study.rows[at]);
+    let (name, column) = (record.column("strategy").expect("names"), record.column(column).expect("the column"));
+    rows.iter().filter(|cells| cells[name] == strategy.into()).map(|cells| &cells[column]).collect()
+}
+
+fn figure(study: &Study, table: &str, strategy: &str, column: &str) -> f64 {
+    let cells = cells(study, table, strategy, column);
+    cells.first().and_then(|cell| cell.number()).unwrap_or_else(|| panic!("no {column} of {strategy} in {table}"))
+}
+
+#[test]
+fn strategies_are_told_apart_by_probability_and_by_measuring() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("street.toml");
+    fs::write(&scene, STREET).expect("written");
+    let options = Options { scenes: vec![scene], ..options(folder.path(), "uniform,intensity,influence:cutoff=100") };
+    let study = ran("strategies", &options, folder.path());
+    let quality = |strategy, column| figure(&study, "quality-street", strategy, column);
+    // Points and spots alone: intensity is exact but for the facades' colours.
+    assert!(quality("intensity", "mean_variance").abs() < 1e-3, "{}", quality("intensity", "mean_variance"));
+    assert!(quality("uniform", "median_variance") > 0.1, "{}", quality("uniform", "median_variance"));
+    assert!(quality("influence:cutoff=100", "biased_receivers") > 10.0, "lights out of range are never picked");
+    assert!(quality("influence:cutoff=100", "mean_variance").is_infinite());
+    assert_eq!(figure(&study, "measured-street", "intensity", "error_passes_to_intensity"), 1.0);
+    assert!(figure(&study, "measured-street", "uniform", "error_passes_to_intensity") > 1.0);
+    assert_eq!(*cells(&study, "measured-street", "influence:cutoff=100", "error_passes")[0], Cell::Missing);
+}
+
+#[test]
+fn the_cut_off_loses_what_its_closed_form_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options { pixels: 128, ..options(folder.path(), "influence,influence-tail,stochastic-cull") };
+    let study = ran("cutoff", &options, folder.path());
+    for strategy in ["influence:cutoff=2", "influence", "influence:cutoff=0.125", "influence:transfer=srgb"] {
+        let ratio = figure(&study, "law", strategy, "ratio");
+        assert!((ratio - 1.0).abs() < 0.1, "{strategy}: {ratio} of the closed form");
+    }
+    let lost = |table, strategy| figure(&study, table, strategy, "lost_share");
+    let law = figure(&study, "law", "influence", "lost_share");
+    assert!(
+        (lost("plane", "influence") / law - 1.0).abs() < 1e-3,
+        "measured and listed: {} for {law}",
+        lost("plane", "influence")
+    );
+    assert!(lost("open-city", "influence") > 3.0 * lost("city", "influence"), "buildings hide the far lamps");
+    for table in ["plane", "open-city", "city"] {
+        let half = figure(&study, table, "stochastic-cull", "lost_share_half_width");
+        assert!(
+            lost(table, "stochastic-cull").abs() < 2.0 * half,
+            "{table}: {} ± {half}",
+            lost(table, "stochastic-cull")
+        );
+    }
+}
+
+#[test]
+fn growth_is_recorded_with_its_exponents() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options { max_lights: 10_000, ..options(folder.path(), "uniform,power,influence") };
+    let study = ran("scaling", &options, folder.path());
+    let lights: Vec<f64> = cells(&study, "growth", "power", "lights").iter().filter_map(|cell| cell.number()).collect();
+    assert!(lights.len() == 3 && lights.windows(2).all(|w| w[1] > 5.0 * w[0]), "{lights:?}");
+    let exponents = cells(&study, "exponents", "power", "exponent");
+    assert_eq!(exponents.len(), 4, "of set-up, memory, time and error");
+    let memory = exponents[1].number().expect("of memory");
+    assert!((memory - 1.0).abs() < 0.2, "memory grows as lights^{memory}");
+    assert_eq!(cells(&study, "exponents", "influence", "exponent").len(), 3, "an error that does not fall has none");
+}
+
+#[test]
+fn a_scene_without_a_city_cannot_be_grown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("street.toml");
+    fs::write(&scene, STREET).expect("written");
+    let options = Options { scenes: vec![scene], ..options(folder.path(), "power") };
+    let nowhere = || panic!("no folder is made for what cannot be run");
+    let error = study::find("scaling").expect("known").run(&options, String::new(), &nowhere, &Unobserved);
+    let error = error.expect_err("refused").to_string();
+    assert!(error.contains("street.toml") && error.contains("`city`"), "{error}");
+    let error = study::find("strategy").err().expect("unknown").to_string();
+    assert!(error.contains("unknown study `strategy`") && error.contains("strategies"), "{error}");
+}
+
+/// Somebody who wants to stop at once.
+struct Stopped;
+
+impl Observer for Stopped {
+    fn stopped(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_study_stops_when_asked_to_and_keeps_its_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = options(folder.path(), "power");
+    for entry in study::STUDIES {
+        let out = folder.path().join(entry.name);
+        fs::create_dir(&out).expect("made");
+        let error = entry.run(&options, String::new(), &|| Ok(out.clone()), &Stopped).expect_err("stopped");
+        assert!(matches!(error, citylights::base::error::Error::Interrupted), "{error}");
+        assert!(!read_study(&out).expect("a readable study").record.finished);
+    }
+}
+
+#[test]
+fn the_quality_is_the_variance_of_an_estimate() {
+    let mut lights: Vec<_> =
+        (0..12).map(|i| point(Vec3::new(i as f32 * 1.7 - 9.0, (i % 3) as f32, 3.0), 20.0 + i as f32)).collect();
+    lights.push(spot(Vec3::new(2.0, 3.0, 5.0), Vec3::new(-0.2, -0.3, -1.0), 300.0));
+    let stage = stage_with(ground(12.0, lights), LeaveOut::No, Offset::SCALED);
+    let at = receiver(Vec3::new(0.5, 1.0, 0.0), Vec3::Z);
+    // As many receivers at one place as estimates: each draws its own numbers.
+    let copies: Vec<Receiver> = (0..400_000).map(|pixel| Receiver { pixel, ..at }).collect();
+    // In importance of points and spots nothing is left to chance, so that intensity's variance is 0.
+    for (name, picks) in [("uniform", 1.0), ("power", 1.0), ("power:picks=4,points=random", 4.0), ("intensity", 1.0)] {
+        let sampler = sampler(name, &stage);
+        let Finding::Known(known) = quality(&stage, sampler.as_ref(), &at, &mut Vec::new()) else { panic!("{name}") };
+        assert!((known.picks - picks).abs() < 1e-4, "{name}: {} picks", known.picks);
+        let block = sampler.begin(Frame::new(&copies, RunKey { seed: 3, run: 0 }), 0..1);
+        let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
+        worker.fill(&copies, 0..1, false, &mut buffer);
+        let value = |light: u32| {
+            contribution::<0b1111>(&stage.scene().lights()[light as usize], [0.5; 2], &at)
+                .map_or(0.0, |arrival| f64::from(luminance(arrival.radiance)))
+        };
+        let total: f64 = (0..stage.scene().lights().len() as u32).map(value).sum();
+        let estimates =
+            buffer.calls().map(|call| call.iter().map(|p| f64::from(p.weight) * value(p.light)).sum::<f64>());
+        // Brought to one pick, as the quality is.
+        let squares: Vec<f64> = estimates.map(|x| picks * (x / total - 1.0).powi(2)).collect();
+        let found = Moments::of(squares.iter().copied());
+        let t = (found.mean - known.variance) / (found.standard_error() + 1e-9);
+        println!("{name}: {} by probabilities, {} found, t = {t}", known.variance, found.mean);
+        assert!(
+            t.abs() < 4.5,
+            "{name}: {} by probabilities, {} found, t = {t}, limit 4.5, seed 3",
+            known.variance,
+            found.mean
+        );
+        assert!(
+            name == "intensity" || found.standard_error() < 0.02 * known.variance,
+            "{name}: too noisy to see anything"
+        );
+    }
+}
