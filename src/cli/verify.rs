@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
 
 /// Verifies all strategies on a scene, prints what was found and gives the lines of what failed.
 fn verify(
-    scene: Scene,
+    scene: &Scene,
     arguments: &Arguments,
     strategies: &[Configured],
     options: Options,
