@@ -47,7 +47,7 @@ const VARIANTS: &[&str] = &[
     "light-tree:far=0.02",
     "light-tree:split=0.5",
     "resampled:visibility=on",
-    "resampled:from=light-tree,m=4",
+    "resampled:from=power,m=16",
     "restir:combine=1/M",
 ];
 
@@ -304,4 +304,19 @@ impl Found {
 
 fn of<'a>(found: &'a [Found], strategy: &str) -> Option<&'a Found> {
     found.iter().find(|one| one.summary.strategy == strategy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strategy::registry;
+
+    #[test]
+    fn every_variant_differs_from_what_is_registered() {
+        for text in VARIANTS {
+            let strategy = registry::parse(text).expect(text);
+            assert!(strategy.name().contains(':'), "{text} is {} as it stands", strategy.name());
+        }
+        registry::parse_list(&VARIANTS.join(",")).expect("each once");
+    }
 }
