@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         let mut failed = Vec::new();
         for scene in scenes {
             progress.scene(scene.name());
-            failed.extend(verify(scene, arguments, &strategies, options, &progress)?);
+            failed.extend(verify(&scene, arguments, &strategies, options, &progress)?);
         }
         Ok(failed)
     })?;
@@ -99,7 +99,7 @@ fn verify(
 ) -> anyhow::Result<Vec<String>> {
     let name = scene.name().to_owned();
     watch.begin("strategies", strategies.len() as u64);
-    let copies = Copies::new(&scene, arguments.scene_options.offset())?;
+    let copies = Copies::new(scene, arguments.scene_options.offset())?;
     let parts = scene.parts();
     let camera = parts.camera.shrunk(PIXELS);
     let stage = arguments.scene_options.prepare(Scene::new(Parts { camera, ..parts })?);
