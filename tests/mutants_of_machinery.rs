@@ -196,10 +196,7 @@ impl Strategy for Neighbours {
 
 impl Reuse {
     fn sees(&self, at: &Receiver, light: LightId) -> bool {
-        let place = match self.scene.lights()[light as usize].shape() {
-            Shape::Point { position, .. } => position,
-            _ => return true,
-        };
+        let Shape::Point { position: place, .. } = self.scene.lights()[light as usize].shape() else { return true };
         let to = place - at.position;
         self.occluded.visible(&self.offset.segment(at, to.normalize(), to.length()))
     }
