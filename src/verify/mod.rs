@@ -125,6 +125,11 @@ impl<'a> Verifier<'a> {
         Self { stage, options, receivers, truths, second: OnceLock::new() }
     }
 
+    /// What each light adds, at each receiver.
+    pub fn truths(&self) -> &[Truth] {
+        &self.truths
+    }
+
     /// Checks a strategy: levels 0 and 1.
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let sampler = strategy.build(BuildContext { stage: self.stage, seed: self.options.seed })?;
@@ -154,9 +159,10 @@ impl<'a> Verifier<'a> {
             return checks;
         }
         let sites = observe::sites(&subject);
-        checks.extend([contract::picks(&sites, &self.options), contract::reciprocal(&sites)]);
+        checks.push(contract::picks(&sites, &self.options));
         match claim {
             Claim::Unbiased => {
+                checks.push(contract::reciprocal(&sites));
                 checks.push(coverage::coverage(self.stage.scene(), &sites));
                 checks.extend(weights::weights(&sites, &self.options));
                 checks.extend(estimate::estimate(&sites, &self.options));

@@ -170,8 +170,9 @@ impl Site<'_> {
             if self.steady.holds(id) {
                 batch.frequent += weight * value;
             }
+            let unit = weight * f64::from(self.counts[id]);
+            self.pool.add(id, if self.told { unit } else { weight * value });
             if self.told {
-                let unit = weight * f64::from(self.counts[id]);
                 if (unit - 1.0).abs() > self.worst_reciprocal.0 {
                     self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
                 }
@@ -180,7 +181,6 @@ impl Site<'_> {
                     batch.excess += unit - 1.0;
                 }
             }
-            self.pool.add(id, weight);
         }
         batch.picks += buffer.len() as f64;
     }

@@ -11,7 +11,7 @@ use crate::visibility::stage::Stage;
 use glam::DVec3;
 
 /// Independent repetitions of the stratified points on triangles.
-const REPEATS: usize = 8;
+pub(super) const REPEATS: usize = 8;
 
 /// The radiance that each light of a scene adds at one receiver, as luminance in cd/m^2.
 pub struct Truth {
