@@ -218,6 +218,29 @@ fn a_comparison_leaves_rows_tables_and_plots_that_reports_agree_with() {
     citylights().arg("report").arg(&out).arg("--check").assert().code(1).stdout(contains("lamp.md"));
 }
 
+#[test]
+fn verify_prints_statistics_and_takes_a_seed_from_the_clock() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let verify = |more: &[&str]| {
+        let mut command = citylights();
+        command.arg("verify").arg(&file).args(["-s", "power,influence,light-tree", "--draws", "2000"]).args(more);
+        command.assert().success()
+    };
+    let lines = contains("image-mean").and(contains("scaled-counts")).and(contains("bias")).and(contains("(limit"));
+    verify(&[]).stdout(lines.and(contains("every check passed"))).stderr(contains("seed 1"));
+    verify(&["--quiet", "--fresh-seed"]).stdout(contains("pass of")).stderr(contains("seed 1;").not());
+}
+
+#[test]
+fn verify_without_a_scene_looks_at_the_generated_ones() {
+    let mut command = citylights();
+    command.args(["verify", "-q", "-s", "uniform,influence-tail", "--draws", "1000", "--receivers", "4"]);
+    command.assert().success().stdout(contains("no-lights").and(contains("sixteen")).and(contains("giant")));
+    refused("verify --level 2", &["between 0 and 1"]);
+    refused("verify --seed 3 --fresh-seed", &["--fresh-seed"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_comparison_keeps_its_rows_and_goes_on() {

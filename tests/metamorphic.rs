@@ -1,37 +1,24 @@
 //! What must not change when the scene changes in a way that changes nothing, and what must change by a known factor.
 
+#![cfg(feature = "measure")]
+
 mod common;
 
 use citylights::scene::light::Shape;
-use citylights::scene::receiver::Receiver;
-use citylights::scene::{Parts, Scene};
+use citylights::scene::{Parts, Scene, small};
+use citylights::strategy::Claim;
+use citylights::strategy::registry::{self, STRATEGIES};
+use citylights::verify::metamorphic::{Copies, Metamorphic};
+use citylights::verify::{Check, Options, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
-use common::{bits, camera, expected, image, point, sixteen, stage_with};
+use common::{bits, expected, image, point, sixteen, stage_with};
 use glam::{DVec3, Vec3};
 
 const CHOOSING: [&str; 5] = ["uniform", "power", "intensity", "influence-pick:cutoff=20", "influence-tail:cutoff=20"];
 
 fn whole(parts: Parts) -> Stage {
     stage_with(parts, LeaveOut::No, Offset::SCALED)
-}
-
-/// Lengths times `s`, intensities times its square: radiance stays.
-fn scaled(parts: &Parts, s: f32) -> Parts {
-    let mut parts = parts.clone();
-    for light in &mut parts.lights {
-        match light {
-            Shape::Point { position, intensity } | Shape::Spot { position, intensity, .. } => {
-                *position *= s;
-                *intensity *= s * s;
-            }
-            Shape::Triangle { corners, .. } => corners.iter_mut().for_each(|c| *c *= s),
-            Shape::Directional { .. } => {}
-        }
-    }
-    parts.surfaces.iter_mut().for_each(|surface| surface.corners.iter_mut().for_each(|c| *c *= s));
-    parts.camera = camera(parts.camera.position() * s, Vec3::new(0.0, 1.0, 0.0) * s);
-    parts
 }
 
 fn assert_close(a: &[f32], b: &[f32], what: &str) {
@@ -41,18 +28,73 @@ fn assert_close(a: &[f32], b: &[f32], what: &str) {
     }
 }
 
-#[test]
-fn scaling_the_scene_changes_no_expected_count() {
-    let base = whole(sixteen());
-    for s in [0.01f32, 100.0] {
-        let other = whole(scaled(&sixteen(), s));
-        for at in base.receivers().iter().step_by(41) {
-            let there = Receiver { position: at.position * s, ..*at };
-            for name in CHOOSING {
-                let (a, b) = (expected(name, &base, at), expected(name, &other, &there));
-                assert_close(&a, &b, &format!("{name} at scale {s}, pixel {}", at.pixel));
+/// The checks of level 2 for every registered strategy: all pass, and the truth itself.
+fn unchanged(scene: &Scene, options: Options) {
+    let copies = Copies::new(scene, Offset::SCALED).expect("changed scenes");
+    let metamorphic = Metamorphic::new(&copies, options);
+    let mut failed = Vec::new();
+    let mut tell = |who: &str, checks: &[Check]| {
+        for check in checks {
+            println!("{who:<16} {check}");
+            if !check.passed {
+                failed.push(format!("{who:<16} {check}"));
             }
         }
+    };
+    tell("the image", &metamorphic.image());
+    let mut scaled = 0;
+    for entry in STRATEGIES {
+        let strategy = registry::parse(entry.info().name).expect("a name of the registry");
+        let checks = metamorphic.verify(&strategy).expect("samplers");
+        scaled += usize::from(checks.iter().any(|check| check.name == "scaled-counts"));
+        tell(entry.info().name, &checks);
+    }
+    assert!(scaled >= 5, "only {scaled} strategies tell what they choose by");
+    assert!(failed.is_empty(), "{}:\n{}", scene.name(), failed.join("\n"));
+}
+
+#[test]
+fn no_change_that_changes_nothing_changes_a_small_scene() {
+    for parts in small::all().into_iter().filter(|parts| ["sixteen", "one-place"].contains(&&*parts.name)) {
+        let options = Options { receivers: 8, draws: 5_000, batches: 50, ..Options::default() };
+        unchanged(&Scene::new(parts).expect("a scene"), options);
+    }
+}
+
+#[cfg(feature = "recipe")]
+#[test]
+fn no_change_that_changes_nothing_changes_a_city() {
+    use citylights::scene::recipe::{Overrides, load};
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
+    let scene = load(&file, &Overrides::default()).expect("a shipped scene");
+    unchanged(&scene, Options { receivers: 8, draws: 2_000, batches: 50, points: 16, ..Options::default() });
+}
+
+/// Every light on its own: a table of the same lights in parts must not brighten or darken anything.
+#[test]
+fn a_lamp_split_into_ten_leaves_the_expected_image() {
+    let mut parts = sixteen();
+    let tenth = |light: Shape| match light {
+        Shape::Spot { position, axis, intensity, cos_inner, cos_outer } => {
+            Shape::Spot { position, axis, intensity: intensity * 0.1, cos_inner, cos_outer }
+        }
+        other => other,
+    };
+    // The strongest lamp of all.
+    let lamp = tenth(parts.lights[8]);
+    parts.lights[8] = lamp;
+    parts.lights.extend([lamp; 9]);
+    let (whole, split) = (whole(sixteen()), whole(parts));
+    let options = Options { receivers: 8, draws: 5_000, seed: 3, ..Options::default() };
+    let (before, after) = (Verifier::new(&whole, options), Verifier::new(&split, options));
+    for (a, b) in before.truths().iter().zip(after.truths()) {
+        assert!((a.total() - b.total()).abs() <= 0.02 * a.total(), "{} and {}", a.total(), b.total());
+    }
+    for entry in STRATEGIES.iter().filter(|entry| entry.info().claim == Claim::Unbiased) {
+        let strategy = registry::parse(entry.info().name).expect("a name of the registry");
+        let checks = after.verify(&strategy).expect("a sampler");
+        let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
+        assert!(failed.is_empty(), "{}: {failed:?}", strategy.name());
     }
 }
 

@@ -125,6 +125,11 @@ impl<'a> Verifier<'a> {
         Self { stage, options, receivers, truths, second: OnceLock::new() }
     }
 
+    /// What each light adds, at each receiver.
+    pub fn truths(&self) -> &[Truth] {
+        &self.truths
+    }
+
     /// Checks a strategy: levels 0 and 1.
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let sampler = strategy.build(BuildContext { stage: self.stage, seed: self.options.seed })?;

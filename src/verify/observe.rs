@@ -28,6 +28,10 @@ const PILOT: u32 = u32::MAX;
 /// A light seen fewer times in it is too rare to tell how often it is picked.
 const SEEN: f32 = 10.0;
 
+/// In deeper shadow than this, lights that are hidden take the place of those that are not, and are picked by what they could
+/// add: the little that is seen of resampling there says nothing of its mean.
+const LIT: f64 = 0.01;
+
 /// A pass that must be begun for a whole frame costs as much as that at so many receivers alone.
 const FRAME: usize = 200;
 
@@ -170,8 +174,9 @@ impl Site<'_> {
             if self.steady.holds(id) {
                 batch.frequent += weight * value;
             }
+            let unit = weight * f64::from(self.counts[id]);
+            self.pool.add(id, if self.told { unit } else { weight * value });
             if self.told {
-                let unit = weight * f64::from(self.counts[id]);
                 if (unit - 1.0).abs() > self.worst_reciprocal.0 {
                     self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
                 }
@@ -180,7 +185,6 @@ impl Site<'_> {
                     batch.excess += unit - 1.0;
                 }
             }
-            self.pool.add(id, weight);
         }
         batch.picks += buffer.len() as f64;
     }
@@ -294,8 +298,10 @@ fn counts(subject: &Subject<'_, '_>, calls: &[u32]) -> Vec<Counts> {
                 buffer.calls().flatten().for_each(|pick| counts[pick.light as usize] += 1.0);
             }
         });
-        for (Counts { counts, .. }, &calls) in counts.iter_mut().zip(calls).filter(|(counts, _)| !counts.told) {
-            counts.iter_mut().for_each(|count| *count = if *count < SEEN { 0.0 } else { *count / calls as f32 });
+        let sites = counts.iter_mut().zip(calls).zip(&subject.verifier.truths);
+        for ((Counts { counts, .. }, &calls), truth) in sites.filter(|((counts, _), _)| !counts.told) {
+            let least = if truth.lit() < LIT { f32::INFINITY } else { SEEN };
+            counts.iter_mut().for_each(|count| *count = if *count < least { 0.0 } else { *count / calls as f32 });
         }
     }
     counts

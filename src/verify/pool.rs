@@ -19,12 +19,13 @@ const PART: f64 = 200.0;
 /// The lights that add something and can be picked, in bins.
 ///
 /// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where counts cannot be
-/// told it is the sum of weight times contribution. Resampling gives a light that is dim beside others a great weight on
+/// told it is the sum of weight times contribution, of the very point: resampling may drop points that add nothing, and the
+/// weights of a light then sum to the share of it that is seen. It gives a light that is dim beside others a great weight on
 /// the rare occasions that it wins against them; only together do the dim ones win often enough to be tested.
 pub(super) struct Pool {
     bins: Vec<Bin>,
-    /// What a pick of each light adds to its bin when its weight is 1, and its bin; `u32::MAX` is none.
-    lights: Vec<(f64, u32)>,
+    /// Of each light; `u32::MAX` is none.
+    bin_of: Vec<u32>,
 }
 
 /// Lights that are tested together.
@@ -33,6 +34,8 @@ pub(super) struct Bin {
     /// Expected sum a call, and how much of its variance is left to chance: the mean of 1 - expected count, if told.
     pub(super) expected: f64,
     pub(super) chance: f64,
+    /// Variance of what is expected, where the truth knows no better.
+    pub(super) uncertain: f64,
     /// One of the lights.
     pub(super) first: u32,
     /// Expected picks in all draws.
@@ -63,7 +66,7 @@ impl Pool {
             order.clear();
         }
         let mut bins: Vec<Bin> = Vec::new();
-        let mut lights = vec![(0.0, u32::MAX); counts.len()];
+        let mut bin_of = vec![u32::MAX; counts.len()];
         for light in order {
             let full = bins.last().is_none_or(|bin| bin.expected >= part && bin.picks >= picks);
             // What would not fill another joins the last.
@@ -76,21 +79,26 @@ impl Pool {
             bins[at].picks += expected;
             bins[at].expected += share(light);
             bins[at].chance += share(light) * (1.0 - f64::from(counts[light])).max(0.0);
-            lights[light] = (share(light), at as u32);
+            bin_of[light] = at as u32;
         }
-        bins.iter_mut().for_each(|bin| bin.chance /= bin.expected);
-        Self { bins, lights }
+        for (bin, at) in bins.iter_mut().zip(0..) {
+            bin.chance /= bin.expected;
+            if !told {
+                let truth = truth.sum(|light| bin_of[light] == at);
+                bin.uncertain = truth.variance / truth.n as f64;
+            }
+        }
+        Self { bins, bin_of }
     }
 
     pub(super) fn bins(&self) -> &[Bin] {
         &self.bins
     }
 
-    /// Adds a pick of a light.
-    pub(super) fn add(&mut self, light: usize, weight: f64) {
-        let (share, bin) = self.lights[light];
-        if let Some(bin) = self.bins.get_mut(bin as usize) {
-            bin.batch += weight * share;
+    /// Adds what a pick of a light comes to: weight times expected count or contribution.
+    pub(super) fn add(&mut self, light: usize, amount: f64) {
+        if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
+            bin.batch += amount;
         }
     }
 

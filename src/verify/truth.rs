@@ -4,14 +4,15 @@ use crate::base::colour::luminance;
 use crate::base::random::Stream;
 use crate::base::statistics::Moments;
 use crate::render::exact::{grid_side, shadowed, stratified};
-use crate::scene::light::Kind;
+use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
 use crate::visibility::stage::Stage;
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// Independent repetitions of the stratified points on triangles.
-const REPEATS: usize = 8;
+pub(super) const REPEATS: usize = 8;
 
 /// The radiance that each light of a scene adds at one receiver, as luminance in cd/m^2.
 pub struct Truth {
@@ -20,6 +21,8 @@ pub struct Truth {
     triangles: Vec<(u32, [f64; REPEATS])>,
     mean: Vec<f64>,
     total: f64,
+    /// What could arrive with nothing in between, about.
+    open: f64,
 }
 
 impl Truth {
@@ -29,7 +32,9 @@ impl Truth {
         let lights = stage.scene().lights();
         let mut rays = 0;
         let all = || lights.iter().zip(0u32..).filter(|(light, _)| light.kind() == Kind::Triangle);
-        let total: f64 = all().map(|(light, _)| f64::from(importance(light, at))).sum();
+        let weigh = |light: &Light| f64::from(importance(light, at));
+        let total: f64 = all().map(|(light, _)| weigh(light)).sum();
+        let open = lights.iter().map(weigh).sum::<f64>() * f64::from(luminance(at.albedo)) / PI;
         let mut mean = vec![0.0; lights.len()];
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
             *value = grey(shadowed(stage, at, light, [0.0; 2], &mut rays));
@@ -37,7 +42,7 @@ impl Truth {
         let delta = mean.clone();
         let mut triangles = Vec::new();
         for (light, id) in all() {
-            let share = f64::from(importance(light, at)) / total.max(f64::MIN_POSITIVE);
+            let share = weigh(light) / total.max(f64::MIN_POSITIVE);
             let side = grid_side(points, share);
             let mut rng = Stream::keyed(&[seed, u64::from(at.pixel), u64::from(id), u64::from_le_bytes(*b"thetruth")]);
             let values: [f64; REPEATS] =
@@ -46,7 +51,7 @@ impl Truth {
             triangles.push((id, values));
         }
         let total = mean.iter().sum();
-        Self { delta, triangles, mean, total }
+        Self { delta, triangles, mean, total, open }
     }
 
     /// What each light adds.
@@ -57,6 +62,11 @@ impl Truth {
     /// What all lights add.
     pub fn total(&self) -> f64 {
         self.total
+    }
+
+    /// How much arrives of what could, about: the rest is in shadow.
+    pub(super) fn lit(&self) -> f64 {
+        if self.open > 0.0 { self.total / self.open } else { 0.0 }
     }
 
     /// Whether a light adds anything that f32 can tell from nothing beside the rest.

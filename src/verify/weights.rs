@@ -1,6 +1,7 @@
 //! Do the weights of each light sum to 1 on average?
 
 use super::observe::{PLENTY, Site, freedom};
+use super::truth::REPEATS;
 use super::{Check, Options};
 use crate::base::statistics::{sidak, student_quantile};
 
@@ -20,11 +21,14 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
     let hypotheses: usize = sites.iter().map(|site| site.bins().len()).sum();
     let freedom = freedom(sites);
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), freedom);
+    // The truth's own variance is known from few repetitions: it counts for more, as far out as the limit.
+    let repetitions = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), REPEATS - 1);
+    let doubt = (repetitions / limit).powi(2);
     let mut worst = (0.0f64, String::new());
     for site in sites {
         for bin in site.bins() {
             let found = site.found(bin);
-            let variance = site.variance(found, bin.expected, bin.chance);
+            let variance = site.variance(found, bin.expected, bin.chance) + bin.uncertain * doubt;
             // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
             let skewness = if site.expected().is_some() && picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
