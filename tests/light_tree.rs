@@ -20,8 +20,11 @@ use common::{expected, ground, image, moon, on_sphere, panel, point, receiver, s
 use glam::Vec3;
 
 /// Every way to weigh and walk that the tree has.
-const WAYS: [&str; 15] = [
+const WAYS: [&str; 18] = [
     "light-tree",
+    "light-tree:open=0",
+    "light-tree:arity=2,open=0",
+    "light-tree:open=0,mix=0.25",
     "light-tree:arity=2",
     "light-tree:arity=4",
     "light-tree:importance=classic",
@@ -373,4 +376,18 @@ fn lightcuts_are_without_noise() {
     let stage = lamps();
     let (one, many) = (image("lightcuts", &stage, 1), image("lightcuts", &stage, 3));
     assert!(one.iter().zip(&many).all(|(a, b)| (*a - *b).abs().max_element() <= 1e-6 * a.max_element()));
+}
+
+#[test]
+fn what_is_doubly_dark_costs_lightcuts_nothing() {
+    // A wall of windows behind the receiver's horizon, turned away from it too, and one lamp in front.
+    let window = |i: i32| {
+        let corner = Vec3::new((i % 20) as f32 - 10.0, -0.5, (i / 20) as f32 * 0.5);
+        panel(corner, Vec3::X * 0.3, Vec3::Z * 0.3, 100.0)
+    };
+    let mut lights: Vec<Shape> = (0..300).flat_map(window).collect();
+    lights.push(point(Vec3::new(0.0, 3.0, 4.0), 50.0));
+    let stage = stage_with(ground(12.0, lights), LeaveOut::No, Offset::SCALED);
+    let counts = expected("lightcuts:error=0", &stage, &receiver(Vec3::new(0.0, 0.0, 2.0), Vec3::Y));
+    assert_eq!(counts.iter().filter(|&&count| count > 0.0).count(), 1, "clusters that add nothing were refined");
 }

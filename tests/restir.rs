@@ -87,3 +87,12 @@ fn a_frame_without_neighbours_is_right_too() {
     }
     assert!((found / wanted - 1.0).abs() < 0.01, "{found} for {wanted}");
 }
+
+#[test]
+fn receivers_beyond_the_cameras_pixels_have_no_neighbours_and_no_accident() {
+    let stage = stage(sixteen());
+    let beyond: Vec<_> = (stage.receivers().iter().step_by(100).zip(5_000..))
+        .map(|(at, pixel)| citylights::scene::receiver::Receiver { pixel, ..*at })
+        .collect();
+    assert!(image(&beyond, 1).iter().all(|rgb| rgb.is_finite()));
+}

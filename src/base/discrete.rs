@@ -99,6 +99,12 @@ impl Cumulative {
         self.ends.clear();
     }
 
+    /// Makes room for so many weights.
+    #[inline]
+    pub fn reserve(&mut self, weights: usize) {
+        self.ends.reserve(weights.saturating_sub(self.ends.len()));
+    }
+
     /// Appends a weight of 0 or more.
     #[inline]
     pub fn push(&mut self, weight: f32) {

@@ -9,10 +9,18 @@ pub fn uniform_point(u: [f32; 2]) -> [f32; 2] {
     [root * (1.0 - u[1]), root * u[1]]
 }
 
+/// What [`uniform_point`] takes to the centroid.
+pub const CENTROID: [f32; 2] = [4.0 / 9.0, 0.5];
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::base::random::Stream;
+
+    #[test]
+    fn the_centroid_is_a_third_of_each_corner() {
+        uniform_point(CENTROID).into_iter().for_each(|b| assert!((b - 1.0 / 3.0).abs() < 1e-6, "{b}"));
+    }
 
     #[test]
     fn points_are_uniform_over_the_four_midpoint_triangles() {

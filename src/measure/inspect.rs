@@ -4,6 +4,7 @@ use super::reference::scene_hash;
 use super::target::spread;
 use crate::base::colour::luminance;
 use crate::base::statistics::quantile;
+use crate::base::triangle::CENTROID;
 use crate::render::exact::{exact, shadowed};
 use crate::scene::influence::{Cutoff, Transfer};
 use crate::scene::light::{Kind, Light, LightId};
@@ -194,10 +195,8 @@ fn sampled(stage: &Stage) -> Vec<Receiver> {
 
 fn unseen(stage: &Stage) -> u64 {
     let receivers = sampled(stage);
-    // The map of the lecture's square root puts this in the middle of a triangle.
-    let middle = [4.0 / 9.0, 0.5];
     let seen =
-        |light: &&Light| receivers.iter().any(|at| shadowed(stage, at, light, middle, &mut 0).max_element() > 0.0);
+        |light: &&Light| receivers.iter().any(|at| shadowed(stage, at, light, CENTROID, &mut 0).max_element() > 0.0);
     stage.scene().lights().par_iter().filter(|light| !seen(light)).count() as u64
 }
 

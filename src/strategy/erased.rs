@@ -200,6 +200,7 @@ impl<F: FrameSampler> AnySampler for PerPass<F> {
     }
 
     fn begin<'a>(&'a self, frame: Frame<'a>, passes: Range<u32>) -> Box<dyn Block + 'a> {
+        debug_assert!(passes.len() <= 1, "state of one pass is no state of {passes:?}");
         Box::new(Begun { sampler: self.0.begin(frame, passes.start), key: frame.key, points: frame.points })
     }
 

@@ -65,8 +65,12 @@ impl Strategy for LightTree {
         let split = "clusters less uniform than this get picks of their own parts; 0 for never";
         let split = arguments.real("split", 0.0, 0.0..=1.0, split)?;
         let cut = arguments.count("cut", 32, 8..=4096, "most clusters with picks of their own, with split")?;
-        let open =
-            arguments.count("open", 16, 0..=1024, "nodes opened at a receiver; walks begin among what they hold")?;
+        let open = arguments.count(
+            "open",
+            16,
+            0..=1024,
+            "nodes opened at a receiver besides the root; walks begin among what they hold",
+        )?;
         let mix = arguments.real("mix", 0.0, 0.0..=0.9, "share of picks made by peak intensity alone")?;
         let how = How {
             weighing: [Weighing::Box, Weighing::Classic][weighing],
@@ -150,15 +154,15 @@ impl<const N: usize> LightSampler for Sampler<N> {
         if split > 0.0 {
             // Of clusters that are not uniform, the one of greatest weight first.
             let need = |cluster: &Cluster<'_, N>, weight| if cluster.uniformity(at) < split { weight } else { 0.0 };
-            self.tree.cut(at, self.walks.cut as usize, need, cut, memory, tally);
+            self.tree.cut(at, (self.walks.cut as usize, usize::MAX), need, cut, memory, tally);
         } else if open > 0 {
-            let most = open as usize * (N - 1) + 1;
-            self.tree.cut(at, most, |_, weight| weight, cut, memory, tally);
+            self.tree.cut(at, (usize::MAX, open as usize), |_, weight| weight, cut, memory, tally);
             let directional = || self.tree.directional(memory).map(|(_, weight)| weight);
             let weights = || directional().chain(cut.parts().iter().map(Part::weight));
             // As in a node, no part is lost to rounding beside one 10^12 times as strong.
             let least = (weights().map(f64::from).sum::<f64>() * LEAST_SHARE) as f32;
             sums.clear();
+            sums.reserve(directional().count() + (open as usize + 1) * N);
             weights().for_each(|weight| sums.push(weight.max(least)));
         }
     }

@@ -21,14 +21,12 @@ use super::{BuildContext, Claim, Info, LightSampler, Pick, Picks, Role, Strategy
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::base::random::Stream;
+use crate::base::triangle::CENTROID;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::f32::consts::FRAC_1_PI;
-
-/// The numbers that [`uniform_point`](crate::base::triangle::uniform_point) sends to the centroid.
-const CENTROID: [f32; 2] = [4.0 / 9.0, 0.5];
 
 /// The representatives of a cut through the tree.
 pub struct Lightcuts {

@@ -123,7 +123,9 @@ impl FrameSampler for Sampler {
     type Pass<'a> = Pass<'a>;
 
     fn begin<'a>(&'a self, frame: Frame<'a>, pass: u32) -> Pass<'a> {
-        let mut of_pixel = vec![NOBODY; self.width as usize * self.height as usize];
+        // Receivers made by hand, as those of a study, may be numbered beyond the camera's pixels.
+        let pixels = frame.receivers.iter().map(|at| at.pixel as usize + 1).max().unwrap_or(0);
+        let mut of_pixel = vec![NOBODY; pixels.max(self.width as usize * self.height as usize)];
         for (at, index) in frame.receivers.iter().zip(0..) {
             of_pixel[at.pixel as usize] = index;
         }

@@ -64,7 +64,7 @@ impl LightSampler for Sampler {
     fn arrive<T: Tally>(&self, at: &Receiver, scratch: &mut Scratch, tally: &mut T) {
         let Scratch { memory, cut } = scratch;
         self.tree.arrive(at, memory, tally);
-        self.tree.cut(at, self.cut as usize, |cluster, _| cluster.bound(at), cut, memory, tally);
+        self.tree.cut(at, (self.cut as usize, usize::MAX), |cluster, _| cluster.bound(at), cut, memory, tally);
     }
 
     fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, scratch: &mut Scratch, out: &mut Picks<'_, T>) {

@@ -7,13 +7,10 @@
 
 mod area;
 mod cutoff;
-
 pub mod fit;
 mod plane;
-
 pub mod quality;
 mod scaling;
-
 mod strategies;
 mod table;
 mod timing;

@@ -12,6 +12,7 @@
 //! Where picks are not independent (lists, splitting) this is an upper bound, since such picks vary less together.
 
 use crate::base::colour::luminance;
+use crate::base::triangle::CENTROID;
 use crate::scene::light::Light;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
@@ -26,9 +27,6 @@ pub struct Quality {
     /// Expected picks a call.
     pub picks: f64,
 }
-
-/// The point of a triangle's map that gives its centroid: barycentrics of a third each.
-const CENTROID: [f32; 2] = [4.0 / 9.0, 0.5];
 
 /// Unshadowed contribution of a light at its centroid, as a luminance in cd/m^2.
 pub fn unshadowed(light: &Light, at: &Receiver) -> f64 {

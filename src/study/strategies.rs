@@ -39,6 +39,8 @@ const SCENES: [&str; 2] = ["scenes/downtown.toml", "scenes/plaza.toml"];
 const VARIANTS: &[&str] = &[
     "power:points=random",
     "stochastic-cull:draw=receiver",
+    "light-tree:open=0",
+    "light-tree:arity=2,importance=classic,open=0",
     "light-tree:arity=2,importance=classic",
     "light-tree:arity=2,importance=classic,points=random",
     "light-tree:arity=2",

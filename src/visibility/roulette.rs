@@ -67,6 +67,7 @@ impl Roulette {
         self.everywhere.iter().for_each(|id| see(*id, 1.0));
         let stack = &mut stack.0;
         stack.clear();
+        stack.reserve(self.bvh.max_depth + 2);
         let mut visited = 0;
         // Entered with its bound given that its parent was entered with `parent`.
         let enter = |stack: &mut Vec<(u32, f32)>, node: u32, parent: f32, rng: &mut Stream| {

@@ -47,7 +47,7 @@ impl Reservoir {
     pub(super) fn picks(&self) -> impl Iterator<Item = (LightId, f32)> {
         let scale = self.total / self.places.len() as f64;
         let chosen = self.places.iter().filter(|place| place.until > 0.0);
-        chosen.map(move |place| (place.light, (scale / f64::from(place.target)) as f32))
+        chosen.map(move |place| (place.light, ((scale / f64::from(place.target)) as f32).min(f32::MAX)))
     }
 }
 

@@ -71,12 +71,12 @@ impl Cut {
 
 impl<const N: usize> Tree<N> {
     /// Works out the cut at the receiver that `memory` has arrived at: `most` parts at the most, or the root's slots if those
-    /// are more. `need` is asked for each cluster that is no
-    /// light alone, with its weight at the receiver in lx.
+    /// are more, from `openings` nodes at the most besides the root. `need` is asked for each cluster that is no light alone,
+    /// with its weight at the receiver in lx.
     pub(in crate::strategy) fn cut<T: Tally>(
         &self,
         at: &Receiver,
-        most: usize,
+        (most, openings): (usize, usize),
         need: impl Fn(&Cluster<'_, N>, f32) -> f32,
         cut: &mut Cut,
         memory: &mut Memory<N>,
@@ -86,12 +86,17 @@ impl<const N: usize> Tree<N> {
         if self.nodes.is_empty() {
             return;
         }
+        // All at once, so that no later receiver needs more.
+        cut.parts.reserve(most.min(openings.saturating_mul(N - 1)) + N);
         self.open(0, at, &need, cut, memory, tally);
-        while cut.parts.len() + N - 1 <= most
+        let mut opened = 0;
+        while opened < openings
+            && cut.parts.len() + N - 1 <= most
             && let Some(part) = cut.parts.peek().filter(|part| part.need > 0.0).copied()
             && let Slot::Node(offset) = self.slot(part)
         {
             cut.parts.pop();
+            opened += 1;
             self.open(part.node as usize + offset as usize, at, &need, cut, memory, tally);
         }
     }

@@ -143,8 +143,12 @@ impl<const N: usize> Node<N> {
         } else {
             1.0
         };
+        // Two negative cosines would make a bound of what is doubly dark.
+        if top <= 0.0 || emission <= 0.0 {
+            return 0.0;
+        }
         let bound = self.peak[j] * (top / near).min(1.0) * emission / (near * near);
-        if bound.is_finite() { bound.max(0.0) } else { f32::MAX }
+        if bound.is_finite() { bound } else { f32::MAX }
     }
 
     /// The lights below, as places in the tree's order.
