@@ -53,17 +53,22 @@ struct Told {
     varies: bool,
 }
 
-fn brute_force(receivers: usize, picks: usize) {
+/// Receivers that are tried, and picks of each strategy at each of them, about.
+const RECEIVERS: usize = 2_000;
+const PICKS: f32 = 4_096.0;
+
+#[test]
+fn expected_counts_cover_a_city_and_sum_to_the_picks() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/downtown.toml");
     let scene = load(&path, &Overrides::default()).expect("a shipped scene");
     let stage = Stage::new(scene, LeaveOut::No, Offset::SCALED);
     let all = stage.receivers();
-    let at: Vec<Receiver> = (0..receivers).map(|i| all[i * all.len() / receivers]).collect();
+    let at: Vec<Receiver> = (0..RECEIVERS).map(|i| all[i * all.len() / RECEIVERS]).collect();
     let lights = stage.scene().lights().len();
     assert_eq!(lights, 10_000);
     let adds: Vec<Vec<bool>> = at.par_iter().map(|at| contributing(stage.scene(), at)).collect();
     let pairs: usize = adds.iter().flatten().filter(|adds| **adds).count();
-    assert!(pairs > receivers * lights / 20, "{pairs} pairs add anything");
+    assert!(pairs > RECEIVERS * lights / 20, "{pairs} pairs add anything");
     let mut failed = Vec::new();
     let mut told = 0;
     for name in STRATEGIES.iter().map(|entry| entry.info().name).chain(VARIANTS) {
@@ -80,7 +85,7 @@ fn brute_force(receivers: usize, picks: usize) {
         }
         told += 1;
         let a_call = counts.iter().sum::<f32>().max(1.0);
-        let passes = ((picks as f32 / a_call) as u32).clamp(1, 4_096).min(sampler.most_passes());
+        let passes = ((PICKS / a_call) as u32).clamp(1, 4_096).min(sampler.most_passes());
         let block = sampler.begin(
             Frame { points: citylights::base::draws::Points::R2, ..Frame::new(&at, RunKey { seed: 1, run: 0 }) },
             0..passes,
@@ -114,8 +119,9 @@ fn brute_force(receivers: usize, picks: usize) {
             .collect();
         let unreachable: usize = found.iter().map(|told| told.unreachable).sum();
         let off = |told: &Told| told.found - told.wanted;
-        // Where the number of picks is the same in each call, their mean is exact. Where it varies, even numbers leave an
-        // error of a few picks in all passes at a receiver: receivers are independent, so that their mean says more.
+        // Where the number of picks is the same in each call, their mean is exact, and 1e-5 is held. Where it varies, even
+        // numbers leave an error of a few picks in all passes at a receiver; receivers are independent, so that their mean
+        // says more: 2e-5 of a pick for the light tree, 5e-5 for a tail that is dropped half of the time.
         let steady = found.iter().filter(|told| !told.varies);
         let worst = steady.map(|told| off(told).abs() / told.wanted.max(1.0)).fold(0.0, f64::max);
         let varying = Moments::of(found.iter().filter(|told| told.varies).map(off).collect::<Vec<_>>());
@@ -133,15 +139,4 @@ fn brute_force(receivers: usize, picks: usize) {
     }
     assert!(told >= 8, "only {told} strategies tell");
     assert!(failed.is_empty(), "{failed:?}");
-}
-
-#[test]
-fn expected_counts_cover_a_city_and_sum_to_the_picks_at_a_few_receivers() {
-    brute_force(200, 512);
-}
-
-#[test]
-#[ignore = "takes minutes; for a change to expected counts"]
-fn expected_counts_cover_a_city_and_sum_to_the_picks_at_2000_receivers() {
-    brute_force(2_000, 4_096);
 }

@@ -66,10 +66,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         ..Options::default()
     };
     say(&format!(
-        "seed {}; {} by chance in {} x {chances} checks, each at {:.2e} twice",
+        "seed {}; level {} for {} checks that go by chance: each has failed when it fails twice at {:.1e}",
         options.seed,
         arguments.level,
-        strategies.len() * scenes.len(),
+        chances * strategies.len() * scenes.len(),
         options.level
     ));
     let progress = Progress::new()?;

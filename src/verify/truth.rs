@@ -16,8 +16,7 @@ pub(super) const REPEATS: usize = 8;
 
 /// The radiance that each light of a scene adds at one receiver, as luminance in cd/m^2.
 pub struct Truth {
-    delta: Vec<f64>,
-    /// Of the triangles, by light; `delta` holds 0 there.
+    /// Of the triangles that add anything: few of a city's do.
     triangles: Vec<(u32, [f64; REPEATS])>,
     mean: Vec<f64>,
     total: f64,
@@ -39,7 +38,6 @@ impl Truth {
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
             *value = grey(shadowed(stage, at, light, [0.0; 2], &mut rays));
         }
-        let delta = mean.clone();
         let mut triangles = Vec::new();
         for (light, id) in all() {
             let share = weigh(light) / total.max(f64::MIN_POSITIVE);
@@ -48,10 +46,12 @@ impl Truth {
             let values: [f64; REPEATS] =
                 std::array::from_fn(|_| grey(stratified(stage, at, light, side, &mut rng, &mut rays)));
             mean[id as usize] = values.iter().sum::<f64>() / REPEATS as f64;
-            triangles.push((id, values));
+            if mean[id as usize] > 0.0 {
+                triangles.push((id, values));
+            }
         }
         let total = mean.iter().sum();
-        Self { delta, triangles, mean, total, open }
+        Self { triangles, mean, total, open }
     }
 
     /// What each light adds.
@@ -76,15 +76,15 @@ impl Truth {
 
     /// What a light without extent adds; `None` for a triangle, where it depends on the point.
     pub(super) fn of_delta(&self, light: u32, kind: Kind) -> Option<f64> {
-        (kind != Kind::Triangle).then(|| self.delta[light as usize])
+        (kind != Kind::Triangle).then(|| self.mean[light as usize])
     }
 
     /// Sum over the lights that are `wanted`, from each of the repetitions.
     pub(super) fn sum(&self, wanted: impl Fn(usize) -> bool) -> Moments {
-        let fixed: f64 = self.delta.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, value)| value).sum();
-        let mut repeats = [fixed; REPEATS];
-        for (_, values) in self.triangles.iter().filter(|(id, _)| wanted(*id as usize)) {
-            repeats.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        let all: f64 = self.mean.iter().enumerate().filter(|(i, _)| wanted(*i)).map(|(_, value)| value).sum();
+        let mut repeats = [all; REPEATS];
+        for (id, values) in self.triangles.iter().filter(|(id, _)| wanted(*id as usize)) {
+            repeats.iter_mut().zip(values).for_each(|(sum, value)| *sum += value - self.mean[*id as usize]);
         }
         Moments::of(repeats)
     }
