@@ -9,7 +9,8 @@
 //! | `shadow-ray-ratio/bare-over-ours` | the two taken in turns | 0.95 or more |
 //! | `influence/query` | the list of lights in range of a visible point | 400 ns + 25 ns a listed light or less |
 //! | `alias-table/draw` | a light by its flux | |
-//! | `light-tree/arity-8`, `arity-2` | a pick of the light tree, 64 passes a receiver | 500 ns, 900 ns or less |
+//! | `light-tree/downtown/8`, `downtown/2` | a pick of the light tree by arity, 64 passes a receiver | 500 ns, 900 ns or less |
+//! | `light-tree/megacity/8` | the same among a million lights | twice that among ten thousand or less |
 //! | `power/without-ray` | a pick by flux and its shading, everything but the ray | 150 ns or less |
 
 mod common;
@@ -49,8 +50,9 @@ fn main() {
     shadow_rays(&mut criterion, &stage, &questions);
     influence_query(&mut criterion, &stage);
     alias_draw(&mut criterion, &stage);
-    light_tree_pick(&mut criterion, &stage);
+    light_tree_pick(&mut criterion, SCENE, &stage, &[8, 2]);
     power_without_ray(&mut criterion, stage);
+    light_tree_pick(&mut criterion, "megacity", &common::stage("megacity"), &[8]);
     criterion.final_summary();
 }
 
@@ -149,18 +151,18 @@ fn alias_draw(criterion: &mut Criterion<Reported>, stage: &Stage) {
     group.finish();
 }
 
-fn light_tree_pick(criterion: &mut Criterion<Reported>, stage: &Stage) {
+fn light_tree_pick(criterion: &mut Criterion<Reported>, scene: &str, stage: &Stage, arities: &[u32]) {
     const PASSES: u32 = 64;
     let receivers = spread(stage.receivers(), 1024);
     let frame = Frame { receivers: &receivers, key: RunKey { seed: 1, run: 0 }, points: Points::R2 };
     let mut group = common::flat(criterion, "light-tree");
-    for arity in [8, 2] {
+    for arity in arities {
         let sampler = parse(&format!("light-tree:arity={arity}"))
             .and_then(|tree| tree.build(BuildContext { stage, seed: 1 }))
             .expect("a light tree can be built for any scene");
         let block = sampler.begin(frame, 0..PASSES);
         let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
-        group.bench_function(format!("arity-{arity}"), |b| {
+        group.bench_function(format!("{scene}/{arity}"), |b| {
             common::per_element(b, receivers.len() * PASSES as usize, || {
                 worker.fill(&receivers, 0..PASSES, false, &mut buffer);
                 buffer.len()
