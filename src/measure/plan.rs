@@ -60,7 +60,7 @@ pub const DETECTABLE: f64 = 0.05;
 pub(super) const PASSES: u32 = 4;
 
 impl Pilot {
-    /// Tries a strategy on [`RECEIVERS`] of the target's receivers, with their truth.
+    /// Tries a strategy on `RECEIVERS` of the target's receivers, with their truth.
     ///
     /// One that draws state for a pass or looks at its whole frame gets the whole frame: on a few receivers that cost
     /// would be out of proportion, and neighbours too far apart to be any.

@@ -30,7 +30,7 @@ use std::collections::HashMap;
 const VALID: &str = "changed-valid";
 const COUNTS: &str = "scaled-counts";
 
-/// How many checks of level 2 a right strategy may fail by chance: one for each of [`CHANGES`].
+/// How many checks of level 2 a right strategy may fail by chance: one for each of `CHANGES`.
 pub const CHANCES: usize = CHANGES.len();
 
 /// What is done to a scene, and how far apart the images may be, as a share of the mean.

@@ -5,8 +5,8 @@
 //! drops is thus kept on average, and the same threshold bounds each light's noise instead of its bias. Lists grow with the
 //! logarithm of the city's radius.
 //!
-//! The ranges are drawn once a light and pass, and the hierarchy refitted to them ([`pass`]); or once a light, receiver and
-//! pass, by roulette down a hierarchy ([`receiver`]). From the lights in range, of which there may be any number, a
+//! The ranges are drawn once a light and pass, and the hierarchy refitted to them (`pass`); or once a light, receiver and
+//! pass, by roulette down a hierarchy (`receiver`). From the lights in range, of which there may be any number, a
 //! reservoir of fixed size keeps as many as are to be shaded.
 
 mod pass;

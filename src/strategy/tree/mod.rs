@@ -9,11 +9,11 @@
 //!
 //! | question | where |
 //! |---|---|
-//! | what bounds a set of lights, and how much do they differ from one another? | [`bounds`] |
-//! | which lights belong together? | [`split`], [`build`] |
-//! | how is a cluster weighed at a receiver? | [`node`], [`importance`] |
-//! | how is a light chosen, and with which probability? | [`walk`] |
-//! | which clusters stand for all lights here? | [`cut`] |
+//! | what bounds a set of lights, and how much do they differ from one another? | `bounds` |
+//! | which lights belong together? | `split`, `build` |
+//! | how is a cluster weighed at a receiver? | `node`, [`importance`] |
+//! | how is a light chosen, and with which probability? | `walk` |
+//! | which clusters stand for all lights here? | `cut` |
 //!
 //! Sources: Conty Estevez and Kulla, Proc. ACM CGIT (HPG) 1(2), 2018; wide nodes as in Dammertz, Hanika, Keller, EGSR 2008.
 
