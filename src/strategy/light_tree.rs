@@ -1,6 +1,6 @@
 //! Near and strong lights more often: a walk down a tree of clusters, each weighed at the receiver.
 //!
-//! At a receiver the heaviest clusters are opened first, `open` nodes of them, and each walk begins among what they hold. A
+//! At a receiver the heaviest clusters are opened first until there are `open` nodes of them, and each walk begins among those. A
 //! cluster that seems heavy from afar is thus looked into before it is believed, and one around the receiver is no longer
 //! one number: on `downtown` the variance of a pick falls to a fifth, and all passes at a receiver share the work.
 //!
@@ -39,7 +39,7 @@ struct Walks {
     split: f32,
     /// Most clusters of a cut.
     cut: u32,
-    /// Without splits: nodes opened at a receiver, among whose clusters a walk begins; 0 for the root alone.
+    /// Without splits: walks begin among so many clusters, in nodes of `arity - 1`; 0 for the root alone.
     open: u32,
     /// Share of picks made by peak intensity.
     mix: f32,
@@ -69,7 +69,7 @@ impl Strategy for LightTree {
             "open",
             16,
             0..=1024,
-            "nodes opened at a receiver besides the root; walks begin among what they hold",
+            "nodes of clusters, arity - 1 in each, that walks at a receiver begin among; 0 for the root",
         )?;
         let mix = arguments.real("mix", 0.0, 0.0..=0.9, "share of picks made by peak intensity alone")?;
         let how = How {
@@ -156,13 +156,15 @@ impl<const N: usize> LightSampler for Sampler<N> {
             let need = |cluster: &Cluster<'_, N>, weight| if cluster.uniformity(at) < split { weight } else { 0.0 };
             self.tree.cut(at, (self.walks.cut as usize, usize::MAX), need, cut, memory, tally);
         } else if open > 0 {
-            self.tree.cut(at, (usize::MAX, open as usize), |_, weight| weight, cut, memory, tally);
+            // Slots that can add nothing make no cluster: where many are, more nodes are looked into, up to four times.
+            let (clusters, openings) = (open as usize * (N - 1) + 1, 4 * open as usize);
+            self.tree.cut(at, (clusters, openings), |_, weight| weight, cut, memory, tally);
             let directional = || self.tree.directional(memory).map(|(_, weight)| weight);
             let weights = || directional().chain(cut.parts().iter().map(Part::weight));
             // As in a node, no part is lost to rounding beside one 10^12 times as strong.
             let least = (weights().map(f64::from).sum::<f64>() * LEAST_SHARE) as f32;
             sums.clear();
-            sums.reserve(directional().count() + (open as usize + 1) * N);
+            sums.reserve(directional().count() + clusters + N);
             weights().for_each(|weight| sums.push(weight.max(least)));
         }
     }
