@@ -5,7 +5,7 @@
 //! Each light that is left out is invisible alone. Their sum is not: dropping them is a bias.
 
 use super::Scene;
-use super::light::{Kind, Light};
+use super::light::{Kind, Light, LightId};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -49,6 +49,19 @@ impl Cutoff {
     /// The square of a radius that holds the whole scene, in m^2: longer ones change nothing.
     pub fn longest2(&self) -> f32 {
         self.longest * self.longest
+    }
+
+    /// The volumes of some lights of a scene, and the lights that have none: those in range everywhere.
+    pub fn volumes(&self, scene: &Scene, lights: &[LightId]) -> (Vec<(Influence, LightId)>, Vec<LightId>) {
+        let mut everywhere = Vec::new();
+        let mut volumes = Vec::with_capacity(lights.len());
+        for &id in lights {
+            match self.volume(&scene.lights()[id as usize]) {
+                Some(volume) => volumes.push((volume, id)),
+                None => everywhere.push(id),
+            }
+        }
+        (volumes, everywhere)
     }
 
     /// The volume in which `light` is in range; `None` for a directional light, which is in range everywhere.

@@ -21,14 +21,7 @@ pub struct InfluenceTree {
 impl InfluenceTree {
     /// Builds the hierarchy over some lights of a scene.
     pub fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
-        let mut everywhere = Vec::new();
-        let mut volumes = Vec::with_capacity(lights.len());
-        for &id in lights {
-            match cutoff.volume(&scene.lights()[id as usize]) {
-                Some(volume) => volumes.push((volume, id)),
-                None => everywhere.push(id),
-            }
-        }
+        let (volumes, everywhere) = cutoff.volumes(scene, lights);
         let bvh = bvh::build(volumes.iter().map(|(volume, _)| volume.bounds()), Asked::Points);
         let volumes = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
         Self { bvh, volumes, everywhere }

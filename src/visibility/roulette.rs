@@ -32,14 +32,7 @@ pub struct Stack(Vec<(u32, f32)>);
 impl Roulette {
     /// Builds the hierarchy over some lights of a scene.
     pub fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
-        let mut everywhere = Vec::new();
-        let mut volumes = Vec::with_capacity(lights.len());
-        for &id in lights {
-            match cutoff.volume(&scene.lights()[id as usize]) {
-                Some(volume) => volumes.push((volume, id)),
-                None => everywhere.push(id),
-            }
-        }
+        let (volumes, everywhere) = cutoff.volumes(scene, lights);
         let bvh = bvh::build(volumes.iter().map(|(volume, _)| (volume.centre, volume.centre)), Asked::Points);
         let volumes: Vec<_> = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
         let mut widest2 = vec![0.0f32; bvh.nodes.len()];
