@@ -18,11 +18,22 @@ use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{bits, cuboid, ground, image, moon, panel, point, sampler, sixteen, spot, stage, stage_with};
 use glam::Vec3;
 
+/// Strategies as they come, and with the parameters that change what they keep.
+fn configurations() -> impl Iterator<Item = &'static str> {
+    let others = [
+        "stochastic-cull:draw=receiver",
+        "light-tree:split=0.5",
+        "light-tree:mix=0.5",
+        "light-tree:open=0,arity=2,importance=classic",
+        "resampled:from=light-tree,m=4,visibility=on",
+    ];
+    STRATEGIES.iter().map(|entry| entry.info().name).chain(others)
+}
+
 #[test]
 fn no_strategy_allocates_once_it_is_warm() {
     let stage = stage(sixteen());
-    for entry in STRATEGIES {
-        let name = entry.info().name;
+    for name in configurations() {
         let sampler = sampler(name, &stage);
         let passes = sampler.most_passes().min(4);
         let block = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 3, run: 0 }), 0..passes);
@@ -53,8 +64,7 @@ fn film(name: &str, stage: &Stage, threads: usize) -> Film {
 #[test]
 fn one_thread_and_two_give_the_same_bytes() {
     let stage = stage(sixteen());
-    for entry in STRATEGIES {
-        let name = entry.info().name;
+    for name in configurations() {
         let sampler = sampler(name, &stage);
         let mut alone = Film::new(stage.receivers().len());
         let plan =

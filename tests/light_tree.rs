@@ -311,9 +311,17 @@ fn scaled(light: &Shape, by: f32) -> Shape {
 #[test]
 fn a_light_takes_128_bytes_or_less() {
     let stage = everything(many(10_000, 2));
-    let tree = tree(stage.scene());
-    let bytes = tree.heap_bytes() as f64 / tree.len() as f64;
-    assert!(bytes <= 128.0, "{bytes} bytes a light");
+    let scene = stage.scene();
+    let lights: Vec<LightId> = (0..scene.lights().len() as LightId).collect();
+    fn bytes<const N: usize>(scene: &Scene, lights: &[LightId]) -> f64 {
+        let tree = Tree::<N>::new(scene, lights, How::default());
+        tree.heap_bytes() as f64 / tree.len() as f64
+    }
+    for (arity, bytes) in
+        [(2, bytes::<2>(scene, &lights)), (4, bytes::<4>(scene, &lights)), (8, bytes::<8>(scene, &lights))]
+    {
+        assert!(bytes <= 128.0, "{bytes} bytes a light at arity {arity}");
+    }
 }
 
 #[test]

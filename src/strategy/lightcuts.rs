@@ -1,4 +1,5 @@
-//! A cut through a binary tree of lights, each cluster standing for its lights through one of them: no chance, so no noise.
+//! A cut through a binary tree of lights, each cluster standing for its lights through one of them: no chance once the tree
+//! is built, so no noise from pass to pass.
 //!
 //! The tree is drawn once: a node's representative is that of one of its halves, by peak intensity. At a receiver, a cluster
 //! is worth what its representative adds, shadow ray included, times the cluster's peak intensity over its own. From the

@@ -5,7 +5,7 @@
 //! one unit: weighed by flux, a lamp would count for four windows. Both ways of weighing are conservative and neither depends
 //! on the unit of length. No trigonometric function is called.
 
-use super::node::Node;
+use super::node::{Node, direction};
 use crate::scene::receiver::Receiver;
 use glam::Vec3;
 
@@ -104,8 +104,8 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
     for j in 0..N {
         let (vx, vy, vz) = (node.centre[0][j] - px, node.centre[1][j] - py, node.centre[2][j] - pz);
         let (hx, hy, hz) = (node.half[0][j], node.half[1][j], node.half[2][j]);
-        let (wx, wy, wz) = (node.axis[0][j], node.axis[1][j], node.axis[2][j]);
-        let (ax, ay, az) = (node.axis_half[0][j], node.axis_half[1][j], node.axis_half[2][j]);
+        let [wx, wy, wz] = direction(&node.axis, j);
+        let [ax, ay, az] = direction(&node.axis_half, j);
         let d2 = vx * vx + vy * vy + vz * vz;
         let r2 = hx * hx + hy * hy + hz * hz;
         let (d, r) = (d2.sqrt(), r2.sqrt());
@@ -186,8 +186,8 @@ fn classic<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) ->
     for j in 0..N {
         let (vx, vy, vz) = (node.centre[0][j] - px, node.centre[1][j] - py, node.centre[2][j] - pz);
         let (hx, hy, hz) = (node.half[0][j], node.half[1][j], node.half[2][j]);
-        let (wx, wy, wz) = (node.axis[0][j], node.axis[1][j], node.axis[2][j]);
-        let (ax, ay, az) = (node.axis_half[0][j], node.axis_half[1][j], node.axis_half[2][j]);
+        let [wx, wy, wz] = direction(&node.axis, j);
+        let [ax, ay, az] = direction(&node.axis_half, j);
         let d2 = vx * vx + vy * vy + vz * vz;
         let r2 = hx * hx + hy * hy + hz * hz;
         let d = larger(d2, f32::MIN_POSITIVE).sqrt();

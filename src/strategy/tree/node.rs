@@ -21,6 +21,10 @@ pub(super) enum Slot {
     Empty,
 }
 
+/// Directions are kept in 16 bits a component, their boxes rounded outward: a box of directions is then at most two steps
+/// wider, and exact for what faces along an axis. A power of two, so that 0 and 1 stay what they are.
+const STEP: f32 = 1.0 / 16_384.0;
+
 /// Up to `N` clusters or lights and what bounds each; lengths in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Node<const N: usize> {
@@ -28,10 +32,10 @@ pub(super) struct Node<const N: usize> {
     pub(super) centre: [[f32; N]; 3],
     /// Half the extents of the boxes.
     pub(super) half: [[f32; N]; 3],
-    /// Centres of the boxes of directions.
-    pub(super) axis: [[f32; N]; 3],
-    /// Half the extents of the boxes of directions.
-    pub(super) axis_half: [[f32; N]; 3],
+    /// Centres of the boxes of directions, in units of [`STEP`].
+    pub(super) axis: [[i16; N]; 3],
+    /// Half the extents of the boxes of directions, in units of [`STEP`].
+    pub(super) axis_half: [[i16; N]; 3],
     /// No light of the slot shines where the cosine at it is this or less.
     pub(super) cut: [f32; N],
     /// By how much emission grows with the cosine above `cut`, until it is full.
@@ -51,12 +55,11 @@ pub(super) struct Node<const N: usize> {
 impl<const N: usize> Node<N> {
     /// A node over `items`, which stand at `first` in the tree's order; all slots empty.
     pub(super) fn new(first: u32, items: &[Item]) -> Self {
-        let zero = [[0.0; N]; 3];
         Self {
-            centre: zero,
-            half: zero,
-            axis: zero,
-            axis_half: zero,
+            centre: [[0.0; N]; 3],
+            half: [[0.0; N]; 3],
+            axis: [[0; N]; 3],
+            axis_half: [[0; N]; 3],
             // Beyond any cosine: an empty slot is rejected as one that shines nowhere.
             cut: [2.0; N],
             gain: [0.0; N],
@@ -72,14 +75,11 @@ impl<const N: usize> Node<N> {
     /// Puts `items` into slot `j`, with a link to the light if it is one; [`descend`](Self::descend) sets it otherwise.
     pub(super) fn bound(&mut self, j: usize, bounds: &Bounds, items: &[Item]) {
         let (centre, half) = centred(bounds.low, bounds.high);
-        let (axis, axis_half) = centred(bounds.axis_low, bounds.axis_high);
-        for (lanes, vector) in [
-            (&mut self.centre, centre),
-            (&mut self.half, half),
-            (&mut self.axis, axis),
-            (&mut self.axis_half, axis_half),
-        ] {
-            (0..3).for_each(|k| lanes[k][j] = vector[k]);
+        for k in 0..3 {
+            (self.centre[k][j], self.half[k][j]) = (centre[k], half[k]);
+            let (low, high) = ((bounds.axis_low[k] / STEP).floor() as i16, (bounds.axis_high[k] / STEP).ceil() as i16);
+            let middle = low.midpoint(high);
+            (self.axis[k][j], self.axis_half[k][j]) = (middle, (high - middle).max(middle - low));
         }
         let full: f64 = items.iter().map(|item| f64::from(item.full) * f64::from(item.peak)).sum();
         self.cut[j] = bounds.cut;
@@ -110,14 +110,15 @@ impl<const N: usize> Node<N> {
     /// Whether the squared half diagonal of a slot is less than `share` of its squared distance, all of it is above the
     /// receiver's horizon, and its lights shine there alike: the same way, or all ways.
     pub(super) fn is_far(&self, j: usize, at: &Receiver, share: f32) -> bool {
-        let [centre, half, axis, axis_half] =
-            [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
+        let [centre, half] = [&self.centre, &self.half].map(|lanes| Self::vector(lanes, j));
+        let [axis, axis_half] = [&self.axis, &self.axis_half].map(|lanes| Vec3::from(direction(lanes, j)));
         let to_centre = centre - at.position;
         let (d2, r2) = (to_centre.length_squared(), half.length_squared());
         let lowest = at.normal.dot(to_centre) - at.normal.abs().dot(half);
         let nearest = d2.sqrt() - r2.sqrt();
         let dimmest = -axis.dot(to_centre) - axis.abs().dot(half) - self.cut[j] * (d2.sqrt() + r2.sqrt());
-        let alike = axis_half == Vec3::ZERO && (axis == Vec3::ZERO || dimmest > 0.0);
+        // One direction may lie between two steps.
+        let alike = axis_half.max_element() <= STEP && (axis == Vec3::ZERO || dimmest > 0.0);
         r2 < share * d2 && nearest > 0.0 && lowest > 0.0 && alike
     }
 
@@ -131,8 +132,8 @@ impl<const N: usize> Node<N> {
     /// The most irradiance that the lights of a slot can send, in lx: all of them at the nearest point of the box, with the
     /// greatest cosines that any point of it has.
     pub(super) fn upper_bound(&self, j: usize, at: &Receiver) -> f32 {
-        let [centre, half, axis, axis_half] =
-            [&self.centre, &self.half, &self.axis, &self.axis_half].map(|lanes| Self::vector(lanes, j));
+        let [centre, half] = [&self.centre, &self.half].map(|lanes| Self::vector(lanes, j));
+        let [axis, axis_half] = [&self.axis, &self.axis_half].map(|lanes| Vec3::from(direction(lanes, j)));
         let to_centre = centre - at.position;
         let [near, _] = self.distances(j, at);
         let top = at.normal.dot(to_centre) + at.normal.abs().dot(half);
@@ -160,9 +161,15 @@ impl<const N: usize> Node<N> {
 
     /// A vector of one slot.
     #[inline]
-    pub(super) fn vector(lanes: &[[f32; N]; 3], j: usize) -> Vec3 {
+    fn vector(lanes: &[[f32; N]; 3], j: usize) -> Vec3 {
         Vec3::new(lanes[0][j], lanes[1][j], lanes[2][j])
     }
+}
+
+/// A direction, or half the extent of a box of them, of one slot.
+#[inline(always)]
+pub(super) fn direction<const N: usize>(lanes: &[[i16; N]; 3], j: usize) -> [f32; 3] {
+    [0, 1, 2].map(|k| f32::from(lanes[k][j]) * STEP)
 }
 
 fn unevenness(items: &[Item]) -> f32 {

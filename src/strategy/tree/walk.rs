@@ -113,7 +113,11 @@ impl<const N: usize> Tree<N> {
         if self.nodes.is_empty() {
             return None;
         }
-        let left = ((u - share) / (1.0 - share)).min(ALMOST_ONE);
+        let left = if 1.0 - share < USED_UP {
+            draws.stream().uniform64()
+        } else {
+            ((u - share) / (1.0 - share)).min(ALMOST_ONE)
+        };
         let (light, pmf) = self.pick_below(0, at, left, draws, memory, tally)?;
         Some((light, (1.0 - share) * pmf))
     }
