@@ -5,8 +5,7 @@ use super::triangles::{self, Draw, Posed};
 use super::vectors::{AREALESS_LIMIT, IRRADIANCE_FLOOR, IRRADIANCE_LIMIT, SOLID_ANGLE_LIMIT};
 use super::{precise, textbook};
 use crate::base::random::Stream;
-use crate::base::triangle::Seen;
-use glam::Vec3;
+use crate::base::triangle::SolidAngle;
 
 /// An extreme case.
 #[derive(Clone, Copy)]
@@ -83,6 +82,27 @@ pub const CASES: &[Case] = &[
     Case { name: "irradiance/grazing", what: "as above", run: || irradiance(triangles::grazing) },
     Case { name: "irradiance/degenerate", what: "as above", run: || irradiance(triangles::degenerate) },
     Case { name: "irradiance/repeated", what: "as above", run: || irradiance(triangles::repeated) },
+    Case {
+        name: "solid-angle-sample/ordinary",
+        what: "how far the shares of the solid angle are from the numbers drawn by",
+        run: || sample(triangles::ordinary),
+    },
+    Case {
+        name: "solid-angle-sample/distant",
+        what: "Girard's angle sum cancels",
+        run: || sample(triangles::distant),
+    },
+    Case { name: "solid-angle-sample/sliver", what: "as above", run: || sample(triangles::sliver) },
+    Case { name: "solid-angle-sample/vertex", what: "as above", run: || sample(triangles::vertex) },
+    Case { name: "solid-angle-sample/edge", what: "arcs of nearly pi", run: || sample(triangles::edge) },
+    Case { name: "solid-angle-sample/micro", what: "as above", run: || sample(triangles::micro) },
+    Case { name: "solid-angle-sample/huge", what: "as above", run: || sample(triangles::huge) },
+    Case {
+        name: "solid-angle-sample/touching",
+        what: "up to 2 pi: others give up and draw by area",
+        run: || sample(triangles::touching),
+    },
+    Case { name: "solid-angle-sample/grazing", what: "as above", run: || sample(triangles::grazing) },
 ];
 
 /// Triangles that each case tries.
@@ -90,13 +110,9 @@ const TRIED: usize = 4000;
 /// Names the triangles.
 const SEED: u64 = 4;
 
-fn draws(draw: Draw) -> impl Iterator<Item = (Posed, [[f64; 3]; 3])> {
+fn draws(draw: Draw) -> impl Iterator<Item = Posed> {
     let mut stream = Stream::keyed(&[SEED]);
-    (0..TRIED).map(move |_| {
-        let posed = draw(&mut stream);
-        let exact = posed.corners.map(|corner| corner.as_dvec3().to_array());
-        (posed, exact)
-    })
+    (0..TRIED).map(move |_| draw(&mut stream))
 }
 
 fn solid_angle(draw: Draw) -> Finding {
@@ -109,9 +125,9 @@ fn solid_angle_of_no_area(draw: Draw) -> Finding {
 
 fn solid_angles(draw: Draw, off: fn(f64, f64) -> f64, limit: f64) -> Finding {
     let (mut ours, mut theirs) = (Tally::default(), Tally::default());
-    for (posed, corners) in draws(draw) {
-        let exact = precise::solid_angle(corners);
-        let found = Seen::new(posed.corners.map(Vec3::as_dvec3)).solid_angle();
+    for posed in draws(draw) {
+        let exact = precise::solid_angle(posed.coordinates());
+        let found = posed.seen().solid_angle();
         ours.add(found, off(found, exact));
         let found = f64::from(textbook::solid_angle(posed.corners));
         theirs.add(found, off(found, exact));
@@ -123,20 +139,36 @@ fn irradiance(draw: Draw) -> Finding {
     irradiances(draw, |found, exact| (found - exact).abs() / exact.max(IRRADIANCE_FLOOR))
 }
 
-/// Of all that is more than a billionth of what the solid angle could give: what only peeps over the horizon is at the mercy
-/// of the normal's last digit.
+/// Of all that is no mere speck over the horizon, which is at the mercy of the last digits.
 fn irradiance_itself(draw: Draw) -> Finding {
     irradiances(draw, |found, exact| if exact > 1e-20 { relative(found, exact) } else { (found - exact).abs() })
 }
 
 fn irradiances(draw: Draw, off: fn(f64, f64) -> f64) -> Finding {
     let (mut ours, mut theirs) = (Tally::default(), Tally::default());
-    for (posed, corners) in draws(draw) {
-        let exact = precise::irradiance(corners, posed.normal.as_dvec3().to_array());
-        let found = Seen::new(posed.corners.map(Vec3::as_dvec3)).irradiance(posed.normal.as_dvec3());
+    for posed in draws(draw) {
+        let exact = precise::irradiance(posed.coordinates(), posed.normal.as_dvec3().to_array());
+        let found = posed.seen().irradiance(posed.normal.as_dvec3());
         ours.add_positive(found, off(found, exact));
         let found = f64::from(textbook::irradiance(posed.corners, posed.normal));
         theirs.add_positive(found, off(found, exact));
     }
     Finding { ours, textbook: Some(theirs), limit: IRRADIANCE_LIMIT }
+}
+
+/// Worst error of a share of the solid angle that is right: a histogram of 10^8 samples could not tell.
+const SHARE_LIMIT: f64 = 1e-4;
+
+/// By how much the shares of the solid angle before and along the cut differ from the two numbers that a point was drawn by.
+fn sample(draw: Draw) -> Finding {
+    let mut ours = Tally::default();
+    let mut stream = Stream::keyed(&[SEED, 1]);
+    for posed in draws(draw) {
+        let Some(sampler) = SolidAngle::new(&posed.seen()) else { continue };
+        let u = [stream.uniform64(), stream.uniform64()];
+        let weights = sampler.sample(u);
+        let [cut, along] = precise::shares(posed.coordinates(), weights);
+        ours.add_positive(weights[0].min(weights[1]), (cut - u[0]).abs().max((along - u[1]).abs()));
+    }
+    Finding { ours, textbook: None, limit: SHARE_LIMIT }
 }

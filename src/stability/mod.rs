@@ -10,7 +10,7 @@ mod cases;
 pub mod precise;
 mod tally;
 pub mod textbook;
-mod triangles;
+pub mod triangles;
 pub mod vectors;
 
 pub use cases::{CASES, Case};

@@ -51,7 +51,10 @@ pub fn arctan2(y: Double, x: Double) -> Double {
 
 /// Signed solid angle in steradians of a triangle seen from the origin; positive when `a·(b×c) > 0`, 0 when it is 0.
 pub fn solid_angle(corners: [[f64; 3]; 3]) -> f64 {
-    let [a, b, c] = corners.map(point);
+    of_angle(corners.map(point))
+}
+
+fn of_angle([a, b, c]: [Point; 3]) -> f64 {
     let triple = Double::dot(a, Double::cross(b, c));
     if triple.high == 0.0 {
         return 0.0;
@@ -60,6 +63,25 @@ pub fn solid_angle(corners: [[f64; 3]; 3]) -> f64 {
     let denominator = la * lb * lc + Double::dot(a, b) * lc + Double::dot(a, c) * lb + Double::dot(b, c) * la;
     let half = arctan2(if triple.high < 0.0 { -triple } else { triple }, denominator).high;
     (2.0 * half).copysign(triple.high)
+}
+
+/// Where a point of weights `(b1, b2)` lies, in shares of the solid angle: on the first corner's side of the line from the second
+/// corner through the point, and of a narrow wedge about that line, before the point.
+pub fn shares(corners: [[f64; 3]; 3], [b1, b2]: [f64; 2]) -> [f64; 2] {
+    let one = Double::from(1.0);
+    let towards = one - Double::from(b1);
+    let share = Double::from(b2).over(towards);
+    let [a, b, c] = corners.map(point);
+    let mixed = |p: Point, q: Point, t: Double| -> Point { array::from_fn(|x| p[x] + (q[x] - p[x]) * t) };
+    let end = mixed(a, c, share);
+    let at = mixed(b, end, towards);
+    // Half-chords: (1 - cos) / 2 of an angle is its half's squared sine.
+    let zone = |to: Point| {
+        let (cross, dot) = (length(Double::cross(b, to)), Double::dot(b, to));
+        let (sine, _) = sin_cos(0.5 * arctan2(cross, dot).high);
+        (sine * sine).high
+    };
+    [of_angle([a, b, end]) / of_angle([a, b, c]), zone(at) / zone(end)]
 }
 
 /// Irradiance for unit radiance of a triangle that shines to both sides, clipped at the horizon of a unit `normal`.

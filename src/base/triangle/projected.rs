@@ -93,10 +93,11 @@ impl Piece {
         let guess = 2.0 * (v.sqrt() * (0.5 * arc.angle).sin()).min(1.0).asin();
         let angle = root(v * total, total, guess, arc.angle, |angle| arc.integral(angle));
         // The law of sines in the arc's plane.
-        let (within, beyond) = (lb * angle.sin(), length * (arc.angle - angle).sin());
-        let towards = if within > 0.0 { (within / (within + beyond)).clamp(0.0, 1.0) } else { 0.0 };
+        let (within, beyond) = (lb * angle.sin().max(0.0), length * (arc.angle - angle).sin().max(0.0));
+        let inverse = 1.0 / (within + beyond);
+        let [rest, towards] = if inverse.is_finite() { [beyond * inverse, within * inverse] } else { [1.0, 0.0] };
         let [wa, wb, wc] = self.part.weights;
-        [0, 1].map(|i| wb[i] * (1.0 - towards) + (wa[i] * (1.0 - share) + wc[i] * share) * towards)
+        [0, 1].map(|i| wb[i] * rest + (wa[i] * (1.0 - share) + wc[i] * share) * towards)
     }
 }
 

@@ -52,8 +52,8 @@ impl SolidAngle {
         let share = self.share(u[0]);
         let [a, b, c] = self.seen.corners;
         let end = a + (c - a) * share;
-        let towards = self.way(end, b, self.seen.lengths[1], u[1]);
-        [1.0 - towards, towards * share]
+        let [rest, towards] = self.ways(end, b, self.seen.lengths[1], u[1]);
+        [rest, towards * share]
     }
 
     /// How far from the first corner towards the third the triangle is cut for the share `u` of its solid angle.
@@ -67,10 +67,12 @@ impl SolidAngle {
         (part / (whole + f64::MIN_POSITIVE)).min(1.0)
     }
 
-    /// How far from `b` towards `end` the point lies for the share `v` of the arc's zone.
+    /// How far from `b` towards `end` the point lies for the share `v` of the arc's zone, after what is left to 1: next to a
+    /// corner at the receiver, one of the two is tiny and needs all its digits.
     #[inline(always)]
-    fn way(&self, end: DVec3, b: DVec3, lb: f64, v: f64) -> f64 {
-        let length = end.length();
+    fn ways(&self, end: DVec3, b: DVec3, lb: f64, v: f64) -> [f64; 2] {
+        // The end can round onto the receiver; any direction is then as good as another.
+        let length = end.length().max(1e-150);
         let opposite = openness(b, end, lb, length, edge_normal(b, end, lb, length)) / (2.0 * lb * length);
         // Cosine and squared sine of half the arc; of half its part the sine is root(v) times the arc's.
         let (cos, sin2) = (opposite.sqrt(), (1.0 - opposite).max(0.0));
@@ -80,6 +82,7 @@ impl SolidAngle {
         let beyond = length * (1.0 - v) * (cos * part_cos + root * sin2);
         let within = lb * root * part_cos * (part_cos + root * cos);
         // The smallest number: an arc of exactly π has neither at v = 0.
-        within / (beyond + within + f64::MIN_POSITIVE)
+        let inverse = 1.0 / (beyond + within + f64::MIN_POSITIVE);
+        [beyond * inverse, within * inverse]
     }
 }
