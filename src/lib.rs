@@ -45,6 +45,8 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod shading;
+#[cfg(feature = "measure")]
+pub mod stability;
 pub mod strategy;
 #[cfg(feature = "study")]
 pub mod study;

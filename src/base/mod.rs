@@ -1,7 +1,8 @@
-//! What everything else stands on: random streams, discrete distributions, triangles, statistics, colour, files, errors.
+//! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles, statistics, colour, files, errors.
 
 pub mod colour;
 pub mod discrete;
+pub mod double;
 pub mod draws;
 pub mod error;
 pub mod file;

@@ -11,6 +11,7 @@ mod reference;
 mod render;
 mod report;
 mod scene;
+mod stability;
 mod study;
 mod verify;
 
@@ -32,6 +33,8 @@ enum Verb {
     Compare(compare::Arguments),
     /// Every strategy against its contract: exit code 1 if a check fails
     Verify(verify::Arguments),
+    /// The arithmetic in extreme cases against high precision: exit code 1 if an error is beyond its limit
+    Stability(stability::Arguments),
     /// Render a scene with one strategy
     Render(render::Arguments),
     /// The exact image and its standard error, cached
@@ -59,6 +62,7 @@ pub fn run() -> ExitCode {
     let outcome = match &cli.verb {
         Verb::Compare(arguments) => compare::run(arguments),
         Verb::Verify(arguments) => verify::run(arguments),
+        Verb::Stability(arguments) => stability::run(arguments),
         Verb::Render(arguments) => render::run(arguments),
         Verb::Reference(arguments) => reference::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),
