@@ -23,6 +23,7 @@ use citylights::measure::target::spread;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::needs::Needs;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::{Arrival, contribution};
@@ -78,7 +79,7 @@ fn questions(stage: &Stage) -> Vec<Question> {
                 chosen = Some(light);
             }
         }
-        let to = contribution::<0b1111>(chosen?, rng.uniform2(), at).ok()?;
+        let to = contribution::<0b1111>(LightSampling::Area, chosen?, rng.uniform2(), at).ok()?;
         Some(Question { from: *at, to })
     };
     stage.receivers().iter().filter_map(choose).collect()

@@ -15,6 +15,7 @@ use citylights::measure::target::spread;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::light::Kind;
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::needs::Needs;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
@@ -94,7 +95,9 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
             for call in calls.by_ref().take(PASSES as usize) {
                 let mut radiance = DVec3::ZERO;
                 for pick in call {
-                    let Ok(arrival) = contribution::<KINDS>(&lights[pick.light as usize], pick.uv, at) else {
+                    let Ok(arrival) =
+                        contribution::<KINDS>(LightSampling::Area, &lights[pick.light as usize], pick.uv, at)
+                    else {
                         continue;
                     };
                     if BLOCKED {

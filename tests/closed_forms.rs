@@ -5,6 +5,7 @@ mod common;
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
 use citylights::scene::light::{Light, Shape, cone_flux};
+use citylights::scene::light_sampling::LightSampling;
 use citylights::shading::contribution::contribution;
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -119,7 +120,8 @@ fn a_spots_intensity_over_the_sphere_adds_up_to_its_cone_flux() {
                 let w = axis.as_dvec3() * cosine + (across.as_dvec3() * cos + along.as_dvec3() * sin) * ring;
                 let w = w.normalize().as_vec3();
                 let at = receiver(w, -w);
-                contribution::<0b1111>(&light, [0.0; 2], &at).map_or(0.0, |arrival| f64::from(arrival.radiance.x))
+                contribution::<0b1111>(LightSampling::Area, &light, [0.0; 2], &at)
+                    .map_or(0.0, |arrival| f64::from(arrival.radiance.x))
             })
             .sum();
         let flux = sum / f64::from(n) * 4.0 * PI * PI / f64::from(ALBEDO);
@@ -142,7 +144,7 @@ fn narrow_spots_keep_their_peak_and_their_flux() {
             let ring = ((1.0 - cosine) * (1.0 + cosine)).sqrt();
             let w = axis.as_dvec3() * cosine + (across.as_dvec3() * cos + along.as_dvec3() * sin) * ring;
             let w = w.normalize().as_vec3();
-            let arrival = contribution::<0b1111>(&light, [0.0; 2], &receiver(w, -w));
+            let arrival = contribution::<0b1111>(LightSampling::Area, &light, [0.0; 2], &receiver(w, -w));
             arrival.map_or(0.0, |arrival| f64::from(arrival.radiance.x)) * PI / f64::from(ALBEDO)
         };
         let peak = intensity(1.0, 0.0);

@@ -8,6 +8,7 @@ use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::influence::{Cutoff, Transfer};
 use citylights::scene::light::Shape;
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::shading::importance::importance;
@@ -22,7 +23,7 @@ use std::f64::consts::PI;
 const EPS: f64 = 0.5 / 255.0;
 
 fn unshadowed(stage: &Stage, at: &Receiver, light: u32) -> f64 {
-    contribution::<0b1111>(&stage.scene().lights()[light as usize], [0.3; 2], at)
+    contribution::<0b1111>(LightSampling::Area, &stage.scene().lights()[light as usize], [0.3; 2], at)
         .map_or(0.0, |arrival| f64::from(arrival.radiance.x))
 }
 

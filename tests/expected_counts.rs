@@ -9,6 +9,7 @@ use citylights::base::random::RunKey;
 use citylights::base::statistics::Moments;
 use citylights::scene::Scene;
 use citylights::scene::light::Kind;
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::recipe::{Overrides, load};
 use citylights::shading::contribution::contribution;
@@ -38,7 +39,7 @@ const POINTS: [[f32; 2]; 4] = [[0.0, 0.0], [0.999, 0.001], [0.999, 0.999], [0.6,
 
 /// Whether each light can add anything at a receiver with nothing in between.
 fn contributing(scene: &Scene, at: &Receiver) -> Vec<bool> {
-    let adds = |light, uv: &[f32; 2]| contribution::<0b1111>(light, *uv, at).is_ok();
+    let adds = |light, uv: &[f32; 2]| contribution::<0b1111>(LightSampling::Area, light, *uv, at).is_ok();
     let lights = scene.lights().iter();
     lights
         .map(|light| POINTS[..if light.kind() == Kind::Triangle { 4 } else { 1 }].iter().any(|uv| adds(light, uv)))

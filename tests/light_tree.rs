@@ -10,6 +10,7 @@ use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::Scene;
 use citylights::scene::light::{LightId, Shape};
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::strategy::registry;
@@ -102,7 +103,9 @@ fn hard_receivers(lights: &[Shape], count: usize) -> Vec<Receiver> {
 /// Whether a light adds anything from any of its points tried.
 fn adds(scene: &Scene, light: LightId, at: &Receiver) -> bool {
     let points = [[0.0, 0.0], [0.999, 0.001], [0.999, 0.999], [0.44, 0.5], [0.999, 0.5], [0.3, 0.01], [0.3, 0.99]];
-    points.iter().any(|&uv| contribution::<0b1111>(&scene.lights()[light as usize], uv, at).is_ok())
+    points
+        .iter()
+        .any(|&uv| contribution::<0b1111>(LightSampling::Area, &scene.lights()[light as usize], uv, at).is_ok())
 }
 
 fn everything(lights: Vec<Shape>) -> Stage {

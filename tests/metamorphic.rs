@@ -5,6 +5,7 @@
 mod common;
 
 use citylights::scene::light::Shape;
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::{Parts, Scene, small};
 use citylights::strategy::Claim;
 use citylights::strategy::registry::{self, STRATEGIES};
@@ -30,7 +31,7 @@ fn assert_close(a: &[f32], b: &[f32], what: &str) {
 
 /// The checks of level 2 for every registered strategy: all pass, and the truth itself.
 fn unchanged(scene: &Scene, options: Options) {
-    let copies = Copies::new(scene, Offset::SCALED).expect("changed scenes");
+    let copies = Copies::new(scene, Offset::SCALED, LightSampling::default()).expect("changed scenes");
     let metamorphic = Metamorphic::new(&copies, options);
     let mut failed = Vec::new();
     let mut tell = |who: &str, checks: &[Check]| {

@@ -10,6 +10,7 @@ use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::hash;
 use citylights::scene::light::{LightId, Shape};
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::{Parts, Scene};
 use citylights::strategy::erased::{Frame, FrameSampler, PerPass};
@@ -279,7 +280,8 @@ fn looked_at(name: &str, stage: &Stage) -> Vec<Check> {
 }
 
 fn changed(name: &str, parts: Parts) -> Vec<Check> {
-    let copies = Copies::new(&Scene::new(parts).expect("a scene"), Offset::SCALED).expect("changed scenes");
+    let copies = Copies::new(&Scene::new(parts).expect("a scene"), Offset::SCALED, LightSampling::default())
+        .expect("changed scenes");
     let metamorphic =
         Metamorphic::new(&copies, Options { receivers: 8, draws: 5_000, batches: 50, ..Options::default() });
     assert!(metamorphic.image().iter().all(|check| check.passed), "{:?}", metamorphic.image());

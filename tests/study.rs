@@ -13,6 +13,7 @@ use citylights::record::study::{
 };
 use citylights::record::study_store::{STUDY_FILE, StudyWriter, read_study};
 use citylights::report::{self, Drift};
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::recipe::Overrides;
 use citylights::shading::contribution::contribution;
@@ -378,7 +379,7 @@ fn the_quality_is_the_variance_of_an_estimate() {
         let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
         worker.fill(&copies, 0..1, false, &mut buffer);
         let value = |light: u32| {
-            contribution::<0b1111>(&stage.scene().lights()[light as usize], [0.5; 2], &at)
+            contribution::<0b1111>(LightSampling::Area, &stage.scene().lights()[light as usize], [0.5; 2], &at)
                 .map_or(0.0, |arrival| f64::from(luminance(arrival.radiance)))
         };
         let total: f64 = (0..stage.scene().lights().len() as u32).map(value).sum();

@@ -191,7 +191,12 @@ fn a_point_lies_in_its_part() {
 }
 
 /// Chi-squared of a sampler's points against the share that each part of the triangle should get.
-fn chi_squared(sample: impl Fn([f64; 2]) -> [f64; 2], share: impl Fn(&Seen) -> f64, seen: &Seen, seed: u64) -> (f64, f64) {
+fn chi_squared(
+    sample: impl Fn([f64; 2]) -> [f64; 2],
+    share: impl Fn(&Seen) -> f64,
+    seen: &Seen,
+    seed: u64,
+) -> (f64, f64) {
     const DEPTH: u32 = 3;
     const DRAWS: u32 = 100_000;
     let mut stream = Stream::keyed(&[seed]);
@@ -303,10 +308,13 @@ fn no_switch_between_methods_makes_a_step() {
         ("through the inside", Box::new(move |t| by(DVec3::new(-0.1, -0.1, (t - 0.5) * 1e-2)))),
         ("past an edge", Box::new(move |t| by(DVec3::new(0.02, 0.1 + 0.1 * t, -0.03)))),
         ("over the horizon", Box::new(move |t| by(DVec3::new(2.0, 3.0, -4.0 * t - 1.0)))),
-        ("thickness", Box::new(move |t| {
-            let [a, b, c] = by(DVec3::new(0.0, 1.0, 2.0));
-            [a, b, a + (c - a) * 10f64.powf(-12.0 * t)]
-        })),
+        (
+            "thickness",
+            Box::new(move |t| {
+                let [a, b, c] = by(DVec3::new(0.0, 1.0, 2.0));
+                [a, b, a + (c - a) * 10f64.powf(-12.0 * t)]
+            }),
+        ),
     ];
     const STEPS: u32 = 20_000;
     for (name, path) in &paths {

@@ -5,6 +5,7 @@ mod common;
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
+use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::{Scene, Surface};
 use citylights::shading::contribution::contribution;
@@ -167,7 +168,7 @@ fn emitters_block_themselves_unless_the_far_end_is_short() {
         let (mut rays, mut seen) = (0, 0);
         for at in stage.receivers() {
             for light in stage.scene().lights() {
-                let Ok(arrival) = contribution::<0b1111>(light, [0.4, 0.6], at) else { continue };
+                let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], at) else { continue };
                 let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
                 rays += 1;
                 seen += u32::from(stage.occluders().visible(&Segment { t_max: 1.0 + 1e-5, ..segment }));
@@ -201,7 +202,8 @@ fn acne(far: f32, offset: Offset) -> f64 {
         for light in stage.scene().lights() {
             n += 1;
             let mut rays = 0;
-            let seen = citylights::render::exact::shadowed(&stage, at, light, [0.0; 2], &mut rays);
+            let seen =
+                citylights::render::exact::shadowed(&stage, stage.light_sampling(), at, light, [0.0; 2], &mut rays);
             lost += usize::from(seen == DVec3::ZERO);
         }
     }

@@ -5,6 +5,7 @@ use crate::base::error::Error;
 use crate::base::names;
 use crate::image::Format;
 use crate::scene::Scene;
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::recipe::{self, Overrides};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
@@ -29,6 +30,9 @@ pub(super) struct SceneOptions {
     /// How shadow rays keep off their own surfaces
     #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
     offset: Offset,
+    /// How the point on a triangle light is drawn: area, solid-angle, projected, auto
+    #[arg(long, value_name = "WAY", default_value = "auto", value_parser = light_sampling)]
+    light_sampling: LightSampling,
     /// Leave out what the scene provably does not need
     #[arg(long, value_name = "on|off", default_value = "on", value_parser = leave_out)]
     leave_out: LeaveOut,
@@ -49,12 +53,17 @@ impl SceneOptions {
 
     /// The options that decide an image beside the scene itself.
     pub(super) fn describe(&self) -> String {
-        format!("{:?}, leave out {:?}", self.offset, self.leave_out)
+        format!("{:?}, light sampling {}, leave out {:?}", self.offset, self.light_sampling.name(), self.leave_out)
     }
 
     /// How shadow rays keep off their own surfaces.
     pub(super) fn offset(&self) -> Offset {
         self.offset
+    }
+
+    /// How the point on a triangle light is drawn.
+    pub(super) fn light_sampling(&self) -> LightSampling {
+        self.light_sampling
     }
 
     /// Loads a scene and makes it ready.
@@ -64,7 +73,7 @@ impl SceneOptions {
 
     /// Makes a loaded scene ready.
     pub(super) fn prepare(&self, scene: Scene) -> Stage {
-        let stage = Stage::new(scene, self.leave_out, self.offset);
+        let stage = Stage::new(scene, self.leave_out, self.offset).with_light_sampling(self.light_sampling);
         if stage.receivers().is_empty() {
             say(&format!("{}: the camera sees no surface: nothing but sky and emitters", stage.scene().name()));
         }
@@ -122,6 +131,13 @@ fn positive(text: &str) -> Result<f32, String> {
 fn offset(text: &str) -> Result<Offset, String> {
     let known = Offset::NAMED.map(|(name, _)| name);
     Offset::named(text).ok_or_else(|| {
+        format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
+    })
+}
+
+fn light_sampling(text: &str) -> Result<LightSampling, String> {
+    let known = LightSampling::NAMED.map(|(name, _)| name);
+    LightSampling::named(text).ok_or_else(|| {
         format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
     })
 }

@@ -99,7 +99,7 @@ fn verify(
 ) -> anyhow::Result<Vec<String>> {
     let name = scene.name().to_owned();
     watch.begin("strategies", strategies.len() as u64);
-    let copies = Copies::new(scene, arguments.scene_options.offset())?;
+    let copies = Copies::new(scene, arguments.scene_options.offset(), arguments.scene_options.light_sampling())?;
     let parts = scene.parts();
     let camera = parts.camera.shrunk(PIXELS);
     let stage = arguments.scene_options.prepare(Scene::new(Parts { camera, ..parts })?);

@@ -8,6 +8,7 @@ use crate::base::triangle::CENTROID;
 use crate::render::exact::{exact, shadowed};
 use crate::scene::influence::{Cutoff, Transfer};
 use crate::scene::light::{Kind, Light, LightId};
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::visibility::influence::InfluenceTree;
 use crate::visibility::stage::Stage;
@@ -195,8 +196,9 @@ fn sampled(stage: &Stage) -> Vec<Receiver> {
 
 fn unseen(stage: &Stage) -> u64 {
     let receivers = sampled(stage);
-    let seen =
-        |light: &&Light| receivers.iter().any(|at| shadowed(stage, at, light, CENTROID, &mut 0).max_element() > 0.0);
+    let seen = |light: &&Light| {
+        receivers.iter().any(|at| shadowed(stage, LightSampling::Area, at, light, CENTROID, &mut 0).max_element() > 0.0)
+    };
     stage.scene().lights().par_iter().filter(|light| !seen(light)).count() as u64
 }
 

@@ -8,6 +8,7 @@
 
 use crate::base::random::Stream;
 use crate::scene::light::{Kind, Light};
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
 use crate::shading::importance::importance;
@@ -37,7 +38,7 @@ pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     let mut result = Exact::default();
     let lights = stage.scene().lights();
     for light in lights.iter().filter(|light| light.kind() != Kind::Triangle) {
-        result.sum += shadowed(stage, at, light, [0.0; 2], &mut result.rays);
+        result.sum += shadowed(stage, LightSampling::Area, at, light, [0.0; 2], &mut result.rays);
     }
     let total: f64 = triangles(lights).map(|light| f64::from(importance(light, at))).sum();
     if total <= 0.0 {
@@ -65,20 +66,22 @@ pub fn grid_side(points: u32, share: f64) -> u32 {
 }
 
 /// Mean contribution, in cd/m^2, over a jittered grid of `side * side` points on a triangle, shadow rays included.
+///
+/// By area, however the stage draws its points: what judges those must not share their arithmetic.
 pub fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
     let step = 1.0 / side as f32;
     let mut sum = DVec3::ZERO;
     for cell in 0..side * side {
         let [u, v] = rng.uniform2();
         let uv = [((cell % side) as f32 + u) * step, ((cell / side) as f32 + v) * step];
-        sum += shadowed(stage, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays);
+        sum += shadowed(stage, LightSampling::Area, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays);
     }
     sum / f64::from(side * side)
 }
 
-/// The contribution of a point of a light, shadow ray included.
-pub fn shadowed(stage: &Stage, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
-    let Ok(arrival) = contribution::<0b1111>(light, uv, at) else { return DVec3::ZERO };
+/// The contribution of a point of a light that is drawn `by` a way, shadow ray included.
+pub fn shadowed(stage: &Stage, by: LightSampling, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
+    let Ok(arrival) = contribution::<0b1111>(by, light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
     let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
     if stage.occluders().visible(&segment) { arrival.radiance.as_dvec3() } else { DVec3::ZERO }

@@ -73,7 +73,7 @@ fn shade_pick<const KINDS: u8, const OCCLUSION: bool, const COUNTING: bool>(
     counts: &mut Counts,
 ) -> DVec3 {
     let light = &stage.scene().lights()[pick.light as usize];
-    let arrival = match contribution::<KINDS>(light, pick.uv, at) {
+    let arrival = match contribution::<KINDS>(stage.light_sampling(), light, pick.uv, at) {
         Ok(arrival) => arrival,
         Err(why) => {
             if COUNTING {

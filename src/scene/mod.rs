@@ -6,6 +6,7 @@ pub mod camera;
 pub mod city;
 pub mod influence;
 pub mod light;
+pub mod light_sampling;
 pub mod needs;
 pub mod receiver;
 #[cfg(feature = "recipe")]

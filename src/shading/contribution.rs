@@ -1,7 +1,9 @@
 //! One light sample: point on the light, early outs, unshadowed contribution.
 
+use super::by_angle::by_angle;
 use crate::base::triangle::uniform_point;
 use crate::scene::light::{Kind, Light};
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -9,8 +11,8 @@ use std::f32::consts::FRAC_1_PI;
 /// Unshadowed light from one point of a light: what a shadow ray must still confirm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// Reflected radiance in cd/m^2: `albedo / pi` times irradiance; of a triangle, times its area (one uniform point
-    /// stands for all of it).
+    /// Reflected radiance in cd/m^2: `albedo / pi` times irradiance, of a triangle as if all of it sent what this point
+    /// does: over the density of the point.
     pub radiance: Vec3,
     /// Unit direction from the receiver to the point.
     pub direction: Vec3,
@@ -31,11 +33,17 @@ pub enum EarlyOut {
 
 /// What the point `uv` (in `[0, 1)^2`, used by triangles) of a light adds at a receiver, with nothing in between.
 ///
-/// `KINDS` is the set of [`Kind::bit`]s that the scene holds: code for others is not compiled in.
+/// `by` says which point of a triangle that is. `KINDS` is the set of [`Kind::bit`]s that the scene holds: code for others is not compiled in.
 /// Directional irradiance `E` gives `albedo/pi E (n.w)`; a point `albedo/pi I (n.w) / d^2`; a triangle of area A
-/// `albedo/pi L A (n.w)(n_l.-w) / d^2` (Kajiya 1986 with a Lambertian emitter).
+/// `albedo/pi L A (n.w)(n_l.-w) / d^2` (Kajiya 1986 with a Lambertian emitter) by area, `albedo/pi L S (n.w)` by its solid
+/// angle S, `albedo/pi E` by its irradiance E.
 #[inline(always)]
-pub fn contribution<const KINDS: u8>(light: &Light, uv: [f32; 2], at: &Receiver) -> Result<Arrival, EarlyOut> {
+pub fn contribution<const KINDS: u8>(
+    by: LightSampling,
+    light: &Light,
+    uv: [f32; 2],
+    at: &Receiver,
+) -> Result<Arrival, EarlyOut> {
     let kind = light.kind();
     let reflected = light.colour * at.albedo * FRAC_1_PI;
     if KINDS & Kind::Directional.bit() != 0 && kind == Kind::Directional {
@@ -46,14 +54,23 @@ pub fn contribution<const KINDS: u8>(light: &Light, uv: [f32; 2], at: &Receiver)
         return arrival(reflected * cosine, light.position, f32::INFINITY);
     }
     let (to_light, emitting) = if KINDS & Kind::Triangle.bit() != 0 && kind == Kind::Triangle {
-        let [b1, b2] = uniform_point(uv);
-        let to_light = (light.position - at.position) + light.a * b1 + light.b * b2;
         // Twice the area times the cosine at the light, times the distance. The corner stands for any of its points:
         // the product is the same all over the plane and loses no digits near it.
         let facing = light.c.dot(at.position - light.position);
         if facing <= 0.0 {
             return Err(EarlyOut::BehindLight);
         }
+        let by = by.settled(light, at);
+        if by != LightSampling::Area {
+            let drawn = by_angle(light, uv, at, by == LightSampling::Projected).ok_or(EarlyOut::BehindSurface)?;
+            if drawn.irradiance <= 0.0 {
+                return Err(EarlyOut::BehindSurface);
+            }
+            let (direction, distance) = (drawn.to_light.normalize().as_vec3(), drawn.to_light.length() as f32);
+            return arrival(reflected * drawn.irradiance as f32, direction, distance);
+        }
+        let [b1, b2] = uniform_point(uv);
+        let to_light = (light.position - at.position) + light.a * b1 + light.b * b2;
         (to_light, 0.5 * facing)
     } else {
         (light.position - at.position, 1.0)

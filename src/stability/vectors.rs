@@ -16,14 +16,12 @@ use std::path::Path;
 
 /// What each column of a file is: corners in f32, a unit normal, signed solid angle in sr (positive when `a·(b×c) > 0`), irradiance
 /// for unit radiance clipped at the horizon.
-pub const COLUMNS: [&str; 15] = [
-    "category", "ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "nx", "ny", "nz", "solid_angle", "irradiance",
-];
+pub const COLUMNS: [&str; 15] =
+    ["category", "ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "nx", "ny", "nz", "solid_angle", "irradiance"];
 
 /// The categories; those of [`AREALESS`] are judged by their absolute error.
-pub const CATEGORIES: [&str; 10] = [
-    "ordinary", "distant", "sliver", "vertex", "micro", "huge", "touching", "grazing", "degenerate", "repeated",
-];
+pub const CATEGORIES: [&str; 10] =
+    ["ordinary", "distant", "sliver", "vertex", "micro", "huge", "touching", "grazing", "degenerate", "repeated"];
 
 /// Triangles of no area, or next to none.
 pub const AREALESS: [&str; 2] = ["degenerate", "repeated"];

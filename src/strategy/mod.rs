@@ -16,6 +16,7 @@
 //! Adding one takes a file here and a line in [`registry`].
 
 pub mod all;
+pub mod allocate;
 mod candidates;
 pub mod erased;
 pub mod influence;

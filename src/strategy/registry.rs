@@ -4,8 +4,8 @@ use super::erased::{AnySampler, AnyStrategy, Spread};
 use super::parameters::{Arguments, Parameter};
 use super::{BuildContext, Info, Role, Strategy};
 use super::{
-    all, influence, influence_pick, influence_tail, intensity, light_tree, lightcuts, null, oracle, power, resampled,
-    restir, stochastic_cull, stochastic_lightcuts, uniform,
+    all, allocate, influence, influence_pick, influence_tail, intensity, light_tree, lightcuts, null, oracle, power,
+    resampled, restir, stochastic_cull, stochastic_lightcuts, uniform,
 };
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
@@ -15,6 +15,7 @@ use crate::base::names;
 pub const STRATEGIES: &[Entry] = &[
     Entry::of::<null::Null>(),
     Entry::of::<all::All>(),
+    Entry::of::<allocate::Allocate>(),
     Entry::of::<uniform::Uniform>(),
     Entry::of::<power::Power>(),
     Entry::of::<intensity::Intensity>(),

@@ -7,6 +7,7 @@ use super::tally::Tally;
 use super::{BuildContext, Pick};
 use crate::base::colour::luminance;
 use crate::scene::Scene;
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::{Arrival, contribution};
 use crate::shading::importance::importance;
@@ -21,13 +22,14 @@ pub(super) struct Target {
     /// `None` where nothing can stand between a receiver and a light.
     occluders: Option<Arc<Occluders>>,
     offset: Offset,
+    by: LightSampling,
 }
 
 impl Target {
     pub(super) fn new(context: BuildContext<'_>) -> Self {
         let stage = context.stage;
         let occluders = stage.needs().occlusion.then(|| Arc::clone(stage.occluders()));
-        Self { scene: Arc::clone(stage.scene()), occluders, offset: stage.offset() }
+        Self { scene: Arc::clone(stage.scene()), occluders, offset: stage.offset(), by: stage.light_sampling() }
     }
 
     pub(super) fn scene(&self) -> &Scene {
@@ -62,7 +64,7 @@ impl Target {
     fn arrival<T: Tally>(&self, pick: &Pick, at: &Receiver, tally: &mut T) -> Option<Arrival> {
         tally.weighed(1);
         let light = &self.scene.lights()[pick.light as usize];
-        contribution::<0b1111>(light, pick.uv, &Receiver { albedo: Vec3::ONE, ..*at }).ok()
+        contribution::<0b1111>(self.by, light, pick.uv, &Receiver { albedo: Vec3::ONE, ..*at }).ok()
     }
 }
 

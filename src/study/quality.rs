@@ -14,6 +14,7 @@
 use crate::base::colour::luminance;
 use crate::base::triangle::CENTROID;
 use crate::scene::light::Light;
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
 use crate::strategy::erased::AnySampler;
@@ -30,7 +31,8 @@ pub struct Quality {
 
 /// Unshadowed contribution of a light at its centroid, as a luminance in cd/m^2.
 pub fn unshadowed(light: &Light, at: &Receiver) -> f64 {
-    contribution::<0b1111>(light, CENTROID, at).map_or(0.0, |arrival| f64::from(luminance(arrival.radiance)))
+    contribution::<0b1111>(LightSampling::Area, light, CENTROID, at)
+        .map_or(0.0, |arrival| f64::from(luminance(arrival.radiance)))
 }
 
 /// What can be said of a sampler at a receiver.

@@ -120,7 +120,7 @@ fn replay(subject: &Subject<'_, '_>) -> Check {
         let mut sum = DVec3::ZERO;
         for pick in calls.iter().flatten() {
             let light = &lights[pick.light as usize];
-            sum += shadowed(stage, at, light, pick.uv, &mut rays) * f64::from(pick.weight);
+            sum += shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut rays) * f64::from(pick.weight);
         }
         let (wanted, found) = (grey(sum / f64::from(PASSES)), grey(shown.as_dvec3()));
         worst = worst.max((found - wanted).abs() / wanted.max(f64::MIN_POSITIVE));

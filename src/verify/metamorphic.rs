@@ -14,6 +14,7 @@ use crate::base::error::Result;
 use crate::base::random::hash;
 use crate::base::statistics::{sidak, student_quantile};
 use crate::scene::light::Shape;
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::scene::small::{cuboid, point};
 use crate::scene::{Parts, Scene};
@@ -78,11 +79,11 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Changes a scene in every way.
-    pub fn new(scene: &Scene, offset: Offset) -> Result<Self> {
+    /// Changes a scene in every way; its shadow rays and points on lights are those of the stage that it is compared with.
+    pub fn new(scene: &Scene, offset: Offset, by: LightSampling) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
         parts.camera = parts.camera.shrunk(PIXELS);
-        let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset));
+        let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset).with_light_sampling(by));
         let whole = ready(parts.clone())?;
         let changed = CHANGES.iter().map(|(_, change, _)| ready(change.of(parts.clone(), &whole)));
         Ok(Self { changed: changed.collect::<Result<_>>()?, whole })

@@ -169,7 +169,7 @@ impl Site<'_> {
             let value = self
                 .truth
                 .of_delta(pick.light, light.kind())
-                .unwrap_or_else(|| grey(shadowed(stage, &self.at, light, pick.uv, rays)));
+                .unwrap_or_else(|| grey(shadowed(stage, stage.light_sampling(), &self.at, light, pick.uv, rays)));
             batch.whole += weight * value;
             if self.steady.holds(id) {
                 batch.frequent += weight * value;

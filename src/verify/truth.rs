@@ -36,7 +36,7 @@ impl Truth {
         let open = lights.iter().map(weigh).sum::<f64>() * f64::from(luminance(at.albedo)) / PI;
         let mut mean = vec![0.0; lights.len()];
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
-            *value = grey(shadowed(stage, at, light, [0.0; 2], &mut rays));
+            *value = grey(shadowed(stage, stage.light_sampling(), at, light, [0.0; 2], &mut rays));
         }
         let mut triangles = Vec::new();
         for (light, id) in all() {

@@ -6,6 +6,7 @@ use super::reach;
 use super::view::View;
 use crate::scene::Scene;
 use crate::scene::light::LightId;
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::needs::Needs;
 use crate::scene::receiver::Receiver;
 use std::sync::Arc;
@@ -18,6 +19,7 @@ pub struct Stage {
     needs: Needs,
     lights: Vec<LightId>,
     offset: Offset,
+    light_sampling: LightSampling,
 }
 
 /// Whether a stage leaves out what its scene provably does not need.
@@ -44,7 +46,15 @@ impl Stage {
             }
             LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
         };
-        Self { scene: Arc::new(scene), occluders: Arc::new(occluders), view, needs, lights, offset }
+        Self {
+            scene: Arc::new(scene),
+            occluders: Arc::new(occluders),
+            view,
+            needs,
+            lights,
+            offset,
+            light_sampling: LightSampling::default(),
+        }
     }
 
     /// The scene.
@@ -80,6 +90,17 @@ impl Stage {
     /// How shadow rays keep off their own surfaces.
     pub fn offset(&self) -> Offset {
         self.offset
+    }
+
+    /// How the point on a triangle light is drawn.
+    pub fn light_sampling(&self) -> LightSampling {
+        self.light_sampling
+    }
+
+    /// The same stage with points on triangle lights drawn that way.
+    pub fn with_light_sampling(mut self, by: LightSampling) -> Self {
+        self.light_sampling = by;
+        self
     }
 
     /// The same stage with another set of needs: for measuring what leaving out saves.

@@ -1,0 +1,53 @@
+//! Which point of an area light do two random numbers stand for?
+//!
+//! Every map of the unit square onto a triangle gives the same light on average; they differ in how much the samples
+//! differ from one another, and in what one costs.
+
+use super::light::Light;
+use super::receiver::Receiver;
+
+/// How the point on a triangle light is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSampling {
+    /// Uniform over its area.
+    Area,
+    /// Uniform over the solid angle that it fills, seen from the receiver.
+    SolidAngle,
+    /// In proportion to the light that arrives: solid angle times the receiver's cosine.
+    Projected,
+    /// By area where the light looks small, projected where it does not.
+    #[default]
+    Auto,
+}
+
+impl LightSampling {
+    /// All, by the names that users type.
+    pub const NAMED: [(&str, Self); 4] =
+        [("area", Self::Area), ("solid-angle", Self::SolidAngle), ("projected", Self::Projected), ("auto", Self::Auto)];
+
+    /// The way of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, by)| *by)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMED[self as usize].0
+    }
+
+    /// The way that is taken for a triangle at a receiver: `self`, unless that is [`Auto`](Self::Auto).
+    #[inline(always)]
+    pub fn settled(self, light: &Light, at: &Receiver) -> Self {
+        if self != Self::Auto {
+            return self;
+        }
+        // `c` is twice the area long.
+        let to_centre = (light.position - at.position) + (light.a + light.b) / 3.0;
+        let d2 = to_centre.length_squared();
+        let large = light.c.length_squared() > 4.0 * LARGE * LARGE * d2 * d2;
+        if large { Self::Projected } else { Self::Area }
+    }
+}
+
+/// Area over squared distance of its centroid from which on a triangle is not sampled by area.
+const LARGE: f32 = 0.5;

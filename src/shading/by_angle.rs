@@ -1,0 +1,33 @@
+//! What is a point of a triangle worth that is drawn by the angle it fills?
+//!
+//! Evaluated in f64: next to a light, or far from a thin one, f32 has no digits left.
+
+use crate::base::triangle::{Projected, Seen, SolidAngle};
+use crate::scene::light::Light;
+use crate::scene::receiver::Receiver;
+use glam::DVec3;
+
+/// A point on a triangle, and what it is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Drawn {
+    /// From the receiver to the point, in metres.
+    pub(super) to_light: DVec3,
+    /// Irradiance in lx that the point stands for, for a radiance of 1 cd/m^2.
+    pub(super) irradiance: f64,
+}
+
+/// The point that `uv` stands for, by solid angle or projected; `None` where nothing arrives. The receiver is in front.
+#[inline(never)]
+pub(super) fn by_angle(light: &Light, uv: [f32; 2], at: &Receiver, projected: bool) -> Option<Drawn> {
+    let first = light.position.as_dvec3() - at.position.as_dvec3();
+    let seen = Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()]);
+    let (normal, uv) = (at.normal.as_dvec3(), uv.map(f64::from));
+    if projected {
+        let map = Projected::new(&seen, normal)?;
+        Some(Drawn { to_light: seen.point(map.sample(uv)), irradiance: map.irradiance() })
+    } else {
+        let map = SolidAngle::new(&seen)?;
+        let to_light = seen.point(map.sample(uv));
+        Some(Drawn { to_light, irradiance: map.solid_angle() * normal.dot(to_light) / to_light.length() })
+    }
+}

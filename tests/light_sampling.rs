@@ -1,0 +1,106 @@
+//! Points on triangle lights: every way gives the same light on average, and none shows where it takes over from another.
+
+mod common;
+
+use citylights::base::random::Stream;
+use citylights::base::triangle::Seen;
+use citylights::scene::light::{Light, Shape};
+use citylights::scene::light_sampling::LightSampling;
+use citylights::scene::receiver::Receiver;
+use citylights::shading::contribution::contribution;
+use common::receiver;
+use glam::Vec3;
+use std::f64::consts::PI;
+
+fn white(position: Vec3, normal: Vec3) -> Receiver {
+    Receiver { albedo: Vec3::ONE, ..receiver(position, normal) }
+}
+
+/// Mean and standard error of what points on a light add, and what they should.
+fn estimate(by: LightSampling, light: &Light, at: &Receiver, samples: u32, rng: &mut Stream) -> (f64, f64) {
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for _ in 0..samples {
+        let x = contribution::<0b1111>(by, light, rng.uniform2(), at).map_or(0.0, |a| f64::from(a.radiance.x));
+        sum += x;
+        squares += x * x;
+    }
+    let n = f64::from(samples);
+    let mean = sum / n;
+    (mean, ((squares / n - mean * mean).max(0.0) / n).sqrt())
+}
+
+/// What a receiver of albedo 1 reflects of a triangle of radiance 1.
+fn exact(corners: [Vec3; 3], at: &Receiver) -> f64 {
+    let seen = Seen::new(corners.map(|corner| corner.as_dvec3() - at.position.as_dvec3()));
+    // With counter-clockwise fronts the solid angle is positive from behind.
+    if seen.solid_angle() > 0.0 { 0.0 } else { seen.irradiance(at.normal.as_dvec3()) / PI }
+}
+
+fn point(rng: &mut Stream, scale: f32) -> Vec3 {
+    Vec3::new(rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5) * scale
+}
+
+#[test]
+fn every_way_gives_the_same_light() {
+    const CASES: u32 = 300;
+    // 4 ways, two sides: 1e-3 over all.
+    const LIMIT: f64 = 5.2;
+    let mut rng = Stream::keyed(&[41]);
+    let (mut lit, mut heavy) = (0, 0);
+    for case in 0..CASES {
+        // From far away to almost touching.
+        let corners = [point(&mut rng, 2.0), point(&mut rng, 2.0), point(&mut rng, 2.0)];
+        let distance = 10f32.powf(rng.uniform() * 3.0 - 1.5);
+        let normal = (point(&mut rng, 1.0) + 1e-3).normalize();
+        let at = white(corners[0] + point(&mut rng, 2.0) * distance, normal);
+        let light = Light::from(Shape::Triangle { corners, radiance: Vec3::ONE });
+        let exact = exact(corners, &at);
+        lit += u32::from(exact > 0.0);
+        for (name, by) in LightSampling::NAMED {
+            let (mean, error) = estimate(by, &light, &at, 2_000, &mut rng);
+            // Rounding in f32, and the rare point of an area next to the receiver, which no 2,000 samples need to meet.
+            let slack = 2e-5 * exact;
+            let off = (mean - exact).abs();
+            let settled = by.settled(&light, &at);
+            if settled != LightSampling::Projected && (error > 0.1 * exact || mean < 0.5 * exact) {
+                heavy += 1;
+                continue;
+            }
+            assert!(off <= LIMIT * error + slack, "case {case}, {name}: {mean} +- {error}, exact {exact}");
+            if settled == LightSampling::Projected {
+                assert!(
+                    error <= slack,
+                    "case {case}, {name}: every point is worth the same, yet +- {error} of {exact}"
+                );
+            }
+        }
+    }
+    assert!(heavy < CASES / 4, "{heavy} estimates that rare points decide");
+    assert!(lit > CASES / 6, "{lit} of {CASES} receivers see their light");
+}
+
+#[test]
+fn auto_shows_no_step_where_it_switches() {
+    // Along a wall in front of a panel: the expectation by either way is the closed form on both sides of the switch.
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let light = Light::from(Shape::Triangle { corners, radiance: Vec3::ONE });
+    let by = LightSampling::Auto;
+    let place = |z: f32| white(Vec3::new(0.3, 0.3, z), Vec3::NEG_Z);
+    let settled = |z: f32| by.settled(&light, &place(z));
+    let (mut near, mut far) = (0.1f32, 10.0f32);
+    assert_ne!(settled(near), settled(far), "it never switches");
+    while far - near > 1e-5 {
+        let middle = 0.5 * (near + far);
+        if settled(middle) == settled(far) { far = middle } else { near = middle }
+    }
+    let mut rng = Stream::keyed(&[42]);
+    for z in [near, far] {
+        let at = place(z);
+        let (mean, error) = estimate(by, &light, &at, 400_000, &mut rng);
+        let exact = exact(corners, &at);
+        assert!((mean - exact).abs() <= 4.0 * error + 1e-5 * exact, "at {z} m: {mean} +- {error}, exact {exact}");
+        // No visible step in the noise either: a sample by area differs from the mean by less than its half.
+        let spread = error * 400_000f64.sqrt() / exact;
+        assert!(spread < 0.5, "at {z} m a sample spreads by {spread}");
+    }
+}
