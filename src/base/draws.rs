@@ -115,6 +115,20 @@ impl Draws {
         }
     }
 
+    /// A point in `[0, 1)^2` for what `name` names in this call: it depends on no other draw, so that leaving others out
+    /// does not change it. As a place, a name must not be that of a [`point`](Self::point).
+    #[inline]
+    pub fn point_of(&mut self, name: u32) -> [f32; 2] {
+        match self.of.points {
+            Points::Random => {
+                let RunKey { seed, run } = self.of.key;
+                let words = [seed, u64::from(run), u64::from(self.of.pixel), self.index, u64::from(name)];
+                Stream::keyed(&words).uniform2()
+            }
+            Points::R2 | Points::Sobol => self.point(name),
+        }
+    }
+
     /// Independent numbers.
     #[inline]
     pub fn stream(&mut self) -> &mut Stream {

@@ -45,6 +45,19 @@ pub struct StudyRecord {
     pub notes: Vec<String>,
     /// The tables, in order; their cells lie in files of their own.
     pub tables: Vec<TableRecord>,
+    /// The pictures, in order, each a file of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictures: Vec<PictureRecord>,
+}
+
+/// A picture that a study made.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PictureRecord {
+    /// Its file in the study's folder.
+    pub file: String,
+    /// What it shows.
+    pub title: String,
 }
 
 /// A table without its cells.

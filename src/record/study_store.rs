@@ -1,7 +1,7 @@
 //! Where studies lie: a folder with `study.json` and a CSV file a table, whose rows are there as soon as they are known.
 
 use super::store::{self, input, line};
-use super::study::{Cell, Cells, Format, STUDY_SCHEMA, Study, StudyRecord, TableRecord};
+use super::study::{Cell, Cells, Format, PictureRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord};
 use crate::base::error::{Error, Result};
 use std::fs::{self, OpenOptions};
 use std::io::Write;
@@ -52,6 +52,12 @@ impl StudyWriter {
     /// Adds a note about all of the study.
     pub fn note(&mut self, note: String) {
         self.study.record.notes.push(note);
+    }
+
+    /// Notes a picture; gives the file that it is to be written to.
+    pub fn picture(&mut self, file: &str, title: String) -> PathBuf {
+        self.study.record.pictures.push(PictureRecord { file: file.to_owned(), title });
+        self.folder.join(file)
     }
 
     /// A table and its rows so far.

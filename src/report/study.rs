@@ -54,6 +54,9 @@ fn body(study: &Study, level: usize, folder: &str) -> String {
     }
     record.notes.iter().for_each(|note| _ = writeln!(text, "- {note}"));
     warnings(record).iter().for_each(|warning| _ = writeln!(text, "- **{warning}**"));
+    for picture in &record.pictures {
+        _ = write!(text, "\n![{}]({folder}{})\n", picture.title, picture.file);
+    }
     for (table, sheet) in record.tables.iter().zip(sheets(study)) {
         _ = write!(text, "\n{}", sheet.markdown(level + 1));
         for plot in &table.plots {

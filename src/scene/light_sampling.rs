@@ -15,7 +15,7 @@ pub enum LightSampling {
     SolidAngle,
     /// In proportion to the light that arrives: solid angle times the receiver's cosine.
     Projected,
-    /// By area where the light looks small, projected where it does not.
+    /// By area where the light looks small, by solid angle where it does not.
     #[default]
     Auto,
 }
@@ -45,9 +45,13 @@ impl LightSampling {
         let to_centre = (light.position - at.position) + (light.a + light.b) / 3.0;
         let d2 = to_centre.length_squared();
         let large = light.c.length_squared() > 4.0 * LARGE * LARGE * d2 * d2;
-        if large { Self::Projected } else { Self::Area }
+        if large { Self::SolidAngle } else { Self::Area }
     }
 }
 
 /// Area over squared distance of its centroid from which on a triangle is not sampled by area.
-const LARGE: f32 = 0.5;
+///
+/// Where `study soft-shadows` sees the lower variance begin to pay for the longer time, beside the variance that choosing a
+/// light and visibility leave anyway: cost 1.13 at 2, 0.59 at 4, against area. Projected sampling costs as much there and more
+/// of each ray where other errors are small: it is left to those who ask for it.
+const LARGE: f32 = 2.3;

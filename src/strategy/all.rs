@@ -5,7 +5,6 @@ use super::tally::Tally;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 
@@ -41,9 +40,8 @@ impl LightSampler for Lights {
     type Scratch = ();
 
     fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
-        let call = draws.stream().bits();
         for &(light, extended) in &self.0 {
-            let uv = if extended { Stream::keyed(&[call, u64::from(light)]).uniform2() } else { [0.0; 2] };
+            let uv = if extended { draws.point_of(light) } else { [0.0; 2] };
             out.push_at(light, 1.0, uv);
         }
     }

@@ -1,9 +1,8 @@
 //! How many points does each area light get, where a budget of them is shared out among receivers and lights?
 //!
 //! Every light is taken. Those without extent get one ray a pass; to each triangle a receiver gives `n` points on average, each
-//! of weight `1 / n`, in proportion to a weight: with `by=heuristic` the light's solid angle times its radiance times the
-//! receiver's albedo, with `by=even` 1 where the light can add anything. One factor for all receivers brings the mean over
-//! the image to `rays` points a receiver and pass, so that bright receivers get more.
+//! of weight `1 / n`, in proportion to the light's solid angle times its radiance times the receiver's albedo. One factor for
+//! all receivers brings the mean over the image to `rays` points a receiver and pass, so that bright receivers get more.
 //!
 //! `n` is no whole number. It is rounded up or down at random, by one number for all lights (systematic sampling): so a light
 //! too weak for a point of its own is met now and then, with its weight, and nothing is lost.
@@ -29,13 +28,6 @@ use std::sync::Arc;
 /// `rays` points on triangles a receiver and pass, on average over the image.
 pub struct Allocate {
     rays: f32,
-    by: By,
-}
-
-#[derive(Clone, Copy)]
-enum By {
-    Heuristic,
-    Even,
 }
 
 impl Strategy for Allocate {
@@ -50,24 +42,26 @@ impl Strategy for Allocate {
 
     fn configure(arguments: &mut Arguments) -> Result<Self> {
         let rays = "points on triangles a receiver and pass, on average over the image";
-        let rays = arguments.real("rays", 16.0, 0.015625..=4096.0, rays)?;
-        let by = arguments.choice("by", 0, &["heuristic", "even"], "what points are shared out in proportion to")?;
-        Ok(Self { rays, by: [By::Heuristic, By::Even][by] })
+        Ok(Self { rays: arguments.real("rays", 16.0, 0.015625..=4096.0, rays)? })
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
-        Ok(Sampler::new(context.stage, Weights::Rule(self.by), self.rays))
+        let receivers = context.stage.receivers();
+        let step = receivers.len().div_ceil(RECEIVERS).max(1);
+        let some: Vec<Receiver> = receivers.iter().copied().step_by(step).collect();
+        Ok(Sampler::new(context.stage, &some, Weights::Heuristic, self.rays))
     }
 }
 
-/// What a triangle is weighed by.
-enum Weights {
-    Rule(By),
-    /// A row of weights for each pixel, a column for each triangle.
-    Table {
-        rows: HashMap<u32, usize>,
-        weights: Vec<f32>,
-    },
+/// Receivers that the mean number of points is taken over, at most.
+const RECEIVERS: usize = 4096;
+
+/// What points are shared out in proportion to.
+pub enum Weights {
+    /// Solid angle times radiance times albedo.
+    Heuristic,
+    /// Weights that are known already: by pixel, one for each triangle in the stage's order.
+    Table(HashMap<u32, Vec<f32>>),
 }
 
 /// [`Allocate`] for a scene.
@@ -80,31 +74,17 @@ pub struct Sampler {
     points: f64,
 }
 
-/// Receivers that the mean number of points is taken over, about.
-const RECEIVERS: usize = 4096;
-
 impl Sampler {
-    fn new(stage: &Stage, weights: Weights, rays: f32) -> Self {
+    /// A sampler that gives `rays` points to a receiver, on average over `receivers`.
+    pub fn new(stage: &Stage, receivers: &[Receiver], weights: Weights, rays: f32) -> Self {
         let scene = Arc::clone(stage.scene());
         let extended = |&light: &LightId| scene.lights()[light as usize].kind() == Kind::Triangle;
         let (triangles, others): (Vec<_>, Vec<_>) = stage.lights().iter().copied().partition(extended);
         let mut sampler = Self { scene, triangles, others, weights, points: 0.0 };
-        let step = stage.receivers().len().div_ceil(RECEIVERS).max(1);
-        let receivers: Vec<&Receiver> = stage.receivers().iter().step_by(step).collect();
         // Collected before it is summed: the sum must not depend on threads.
         let totals: Vec<f64> = receivers.par_iter().map(|at| sampler.weights(at).sum()).collect();
-        let mean = totals.iter().sum::<f64>() / totals.len().max(1) as f64;
-        sampler.points = if mean > 0.0 { f64::from(rays) / mean } else { 0.0 };
-        sampler
-    }
-
-    /// A sampler that shares out `rays` points a receiver in proportion to weights that are known already: a row for each of
-    /// `receivers`, a column for each triangle of the stage, in its order.
-    pub fn by_table(stage: &Stage, receivers: &[Receiver], weights: Vec<f32>, rays: f32) -> Self {
-        let rows = receivers.iter().map(|at| at.pixel).zip(0..).collect();
-        let mut sampler = Self::new(stage, Weights::Table { rows, weights }, rays);
-        let total: f64 = receivers.iter().flat_map(|at| sampler.weights(at)).sum();
-        sampler.points = f64::from(rays) * receivers.len() as f64 / total.max(f64::MIN_POSITIVE);
+        let total: f64 = totals.iter().sum();
+        sampler.points = if total > 0.0 { f64::from(rays) * receivers.len() as f64 / total } else { 0.0 };
         sampler
     }
 
@@ -112,16 +92,15 @@ impl Sampler {
     fn weights(&self, at: &Receiver) -> impl Iterator<Item = f64> {
         let albedo = f64::from(luminance(at.albedo));
         let row = match &self.weights {
-            Weights::Table { rows, .. } => rows.get(&at.pixel).map_or(0, |row| row * self.triangles.len()),
-            Weights::Rule(_) => 0,
+            Weights::Table(rows) => rows.get(&at.pixel),
+            Weights::Heuristic => None,
         };
         self.triangles.iter().enumerate().map(move |(i, &id)| {
             let light = &self.scene.lights()[id as usize];
             match &self.weights {
-                Weights::Table { weights, .. } => f64::from(weights[row + i]),
-                Weights::Rule(_) if importance(light, at) <= 0.0 => 0.0,
-                Weights::Rule(By::Even) => 1.0,
-                Weights::Rule(By::Heuristic) => {
+                Weights::Table(_) => row.map_or(0.0, |row| f64::from(row[i])),
+                Weights::Heuristic if importance(light, at) <= 0.0 => 0.0,
+                Weights::Heuristic => {
                     (solid_angle(light, at) * f64::from(luminance(light.colour)) * albedo).max(f64::MIN_POSITIVE)
                 }
             }
@@ -164,7 +143,7 @@ impl LightSampler for Sampler {
             let (weight, of) = ((1.0 / points).min(f64::from(f32::MAX)) as f32, points.ceil().max(1.0) as u32);
             let mut j = 0;
             while target < ends[next] {
-                out.push_at(light, weight, draws.nested(j, of, |draws| draws.point(light)));
+                out.push_at(light, weight, draws.nested(j, of, |draws| draws.point_of(light)));
                 target += 1.0;
                 j += 1;
             }
@@ -181,8 +160,11 @@ impl LightSampler for Sampler {
 
     fn heap_bytes(&self) -> usize {
         let table = match &self.weights {
-            Weights::Table { rows, weights } => size_of_val(&weights[..]) + rows.capacity() * size_of::<(u32, usize)>(),
-            Weights::Rule(_) => 0,
+            Weights::Table(rows) => {
+                let row = size_of::<(u32, Vec<f32>)>() + self.triangles.len() * size_of::<f32>();
+                rows.len() * row
+            }
+            Weights::Heuristic => 0,
         };
         size_of_val(&self.triangles[..]) + size_of_val(&self.others[..]) + table
     }

@@ -128,7 +128,7 @@ fn read(
 
 /// The parameter of every strategy that draws numbers: how they are spread over a pixel's passes.
 fn points(entry: &Entry, arguments: &mut Arguments) -> Result<Points> {
-    if matches!(entry.info.role, Role::Floor | Role::Ceiling) {
+    if entry.info.role == Role::Floor {
         return Ok(Points::Random);
     }
     let meaning = "how choices and points on lights are spread over a pixel's passes";

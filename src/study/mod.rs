@@ -11,6 +11,7 @@ pub mod fit;
 mod plane;
 pub mod quality;
 mod scaling;
+mod soft_shadows;
 mod strategies;
 mod table;
 mod timing;
@@ -31,7 +32,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Every study, in the order of `citylights list studies`.
-pub const STUDIES: [Entry; 3] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY];
+pub const STUDIES: [Entry; 4] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY];
 
 /// A study that can be named.
 #[derive(Clone, Copy)]
@@ -127,6 +128,7 @@ impl Session<'_> {
             wall_s: 0.0,
             notes: Vec::new(),
             tables,
+            pictures: Vec::new(),
         };
         StudyWriter::create(&(self.folder)()?, record)
     }

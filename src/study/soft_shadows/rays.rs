@@ -1,0 +1,158 @@
+//! How does the error of a soft shadow fall with its rays, and how large is its penumbra?
+
+use super::measure::{Contender, measure};
+use super::picture::{Shadow, outlined, shadow, sheet};
+use super::scene::{HEIGHT, SIZES, one_light};
+use crate::base::error::Result;
+use crate::base::random::RunKey;
+use crate::image;
+use crate::measure::reference::Reference;
+use crate::measure::target::{Target, spread};
+use crate::record::study::{Cell, Format, TableRecord};
+use crate::record::study_store::StudyWriter;
+use crate::render::film::Film;
+use crate::render::passes::Plan;
+use crate::render::picture::picture;
+use crate::strategy::BuildContext;
+use crate::strategy::erased::AnySampler;
+use crate::strategy::registry::parse;
+use crate::study::Session;
+use crate::study::fit::PowerLaw;
+use crate::study::table::{both, column, interval, plot};
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use rayon::prelude::*;
+
+/// Shadow rays for each triangle of the light.
+const RAYS: [u32; 4] = [1, 10, 100, 1000];
+/// How points are spread over a light.
+const POINTS: [&str; 2] = ["random", "r2"];
+
+pub(super) fn table(session: &Session<'_>) -> TableRecord {
+    let mut columns = vec![
+        column("light", "light, points", Format::Name),
+        column("side_m", "side,\nm", Format::Number),
+        column("umbra_share", "umbra,\n%", Format::Percent),
+        column("penumbra_share", "penumbra,\n%", Format::Percent),
+        column("passes", "rays a\ntriangle", Format::Whole),
+        column("rays", "rays a\nreceiver", Format::Number),
+        column("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds),
+    ];
+    columns.extend(interval("rel_mse", "relMSE", Format::Number));
+    let title = "error against rays: a post under one square light";
+    TableRecord {
+        name: "rays".into(),
+        title: title.into(),
+        columns,
+        notes: vec![
+            format!(
+                "{} receivers; `all`, as many passes as rays a triangle (the square is two), `points=` as named.",
+                session.options.pixels
+            ),
+            "the light has the same intensity whatever its size; umbra and penumbra as shares of what the camera sees."
+                .into(),
+        ],
+        plots: vec![
+            plot("rays", "error against rays", "light", ("rays", "rays a receiver"), ("rel_mse", "relMSE")),
+            plot(
+                "time",
+                "error against time",
+                "light",
+                ("cpu_s_a_receiver", "CPU s a receiver"),
+                ("rel_mse", "relMSE"),
+            ),
+        ],
+    }
+}
+
+pub(super) fn laws() -> TableRecord {
+    TableRecord {
+        name: "laws".into(),
+        title: "error against rays as a power law".into(),
+        columns: vec![
+            column("light", "light, points", Format::Name),
+            column("exponent", "exponent", Format::Number),
+            column("residual", "residual", Format::Number),
+        ],
+        notes: vec![
+            "relMSE = factor x rays^exponent; -1 is the law of independent points; residual: rms of ln(y / fit)."
+                .into(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+/// Its own error lies far enough below that of 1,000 rays.
+const OWN: f64 = 1e-6;
+
+pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
+    let mut pictures = Vec::new();
+    for (size, side) in SIZES {
+        session.watch.check()?;
+        let stage = Stage::new(one_light(side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
+        let whole = Target::whole(&stage);
+        let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
+        let shadows: Vec<Shadow> = stage.receivers().par_iter().map(|at| shadow(&stage, at)).collect();
+        let share = |kind| shadows.iter().filter(|s| **s == kind).count() as f64 / shadows.len().max(1) as f64;
+        let few = Target::of(&stage, spread(stage.receivers(), session.options.pixels));
+        let reference = Reference::compute(&few, OWN, &session.options.cache, session.watch)?;
+
+        let mut samplers = Vec::new();
+        for points in POINTS {
+            for rays in RAYS {
+                let strategy = parse(&format!("all:points={points}"))?;
+                samplers.push((
+                    points,
+                    rays,
+                    strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?,
+                ));
+            }
+        }
+        let contenders: Vec<Contender<'_>> = samplers
+            .iter()
+            .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
+            .collect();
+        let measured = measure(session, &format!("{size} light"), &contenders, &few.receivers, &reference.truth)?;
+        for points in POINTS {
+            let name = format!("{size}, {points}");
+            let mut errors = Vec::new();
+            for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
+                let mut cells: Vec<Cell> = vec![
+                    name.as_str().into(),
+                    f64::from(side).into(),
+                    share(Shadow::Umbra).into(),
+                    share(Shadow::Penumbra).into(),
+                    u64::from(*rays).into(),
+                    found.rays.into(),
+                    found.cpu_s.into(),
+                ];
+                cells.extend(both(found.rel_mse));
+                writer.row("rays", cells)?;
+                errors.push((found.rays, found.rel_mse.mean));
+            }
+            let law = PowerLaw::fit(errors);
+            writer.row(
+                "laws",
+                vec![name.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()],
+            )?;
+        }
+        let shown = samplers.iter().filter(|(points, ..)| *points == "random");
+        let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
+        row.push(outlined(&stage, seen.truth.mean(), &shadows));
+        pictures.push((row, stage.scene().exposure()));
+    }
+    let exposure = pictures.first().map_or(1.0, |(_, exposure)| *exposure);
+    let rows: Vec<_> = pictures.into_iter().map(|(row, _)| row).collect();
+    let title = "Lights of 5 cm, 30 cm, 1 m and 3 m (down) by 1, 10, 100, 1,000 rays a triangle and exact (across), there with the outlines of \
+                 umbra (blue) and penumbra (orange)";
+    image::write(&writer.picture("shadows.png", title.into()), &sheet(&rows), exposure)?;
+    Ok(())
+}
+
+/// All of the picture, by so many passes of a sampler.
+fn rendered(session: &Session<'_>, stage: &Stage, sampler: &dyn AnySampler, passes: u32) -> Vec<[f32; 3]> {
+    let key = RunKey { seed: session.options.seed, run: 0 };
+    let mut film = Film::new(stage.receivers().len());
+    Plan { stage, receivers: stage.receivers(), sampler, key }.run_parallel(passes, &mut film);
+    picture(stage, &film.image())
+}
