@@ -107,7 +107,7 @@ fn a_hundred_thousand_segments_agree_with_a_tracer_in_f64() {
         }
         let length = from.distance(to);
         let direction = (to - from) / length;
-        let found = !occluders.visible(&Segment { origin: from, along: direction, t_min: 0.0, t_max: length });
+        let found = !occluders.visible(&Segment::bare(from, direction, 0.0, length));
         let (origin, along) = (from.as_dvec3(), direction.as_dvec3());
         let mut wanted = Verdict::Miss;
         for (chunk, &(low, high)) in triangles.chunks(12.min(triangles.len())).zip(&boxes) {
@@ -168,9 +168,10 @@ fn emitters_block_themselves_unless_the_far_end_is_short() {
         for at in stage.receivers() {
             for light in stage.scene().lights() {
                 let Ok(arrival) = contribution::<0b1111>(light, [0.4, 0.6], at) else { continue };
-                let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+                let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
                 rays += 1;
-                seen += u32::from(stage.occluders().visible(&Segment { t_max: 1.0 + 1e-5, ..segment }));
+                let Segment { origin, along, t_min, .. } = segment;
+                seen += u32::from(stage.occluders().visible(&Segment::bare(origin, along, t_min, 1.0 + 1e-5)));
             }
         }
         println!("{name}: {seen} of {rays} rays see the light that they end a hair beyond");
@@ -242,11 +243,14 @@ fn rays_along_an_axis_beside_a_slab_are_not_lost() {
             let (_, occluders) = occluders(surfaces.to_vec());
             for distance in [50.0, 90.0, 200.0, 2_000.0] {
                 let origin = direction * -distance;
-                let ray = Segment { origin, along: direction, t_min: 0.0, t_max: 1e4 };
+                let ray = Segment::bare(origin, direction, 0.0, 1e4);
                 assert!(!occluders.visible(&ray), "{direction} from {distance} m");
                 // The same ray with negative zeros.
                 let negative = Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(-0.0), direction);
-                assert!(!occluders.visible(&Segment { along: negative, ..ray }), "{negative:?} from {distance} m");
+                assert!(
+                    !occluders.visible(&Segment::bare(origin, negative, 0.0, 1e4)),
+                    "{negative:?} from {distance} m"
+                );
                 assert!(occluders.first(origin, negative.as_dvec3()).is_some());
             }
         }
@@ -258,7 +262,7 @@ fn rays_that_graze_the_side_of_a_block_agree_with_its_shape() {
     let (_, occluders) = occluders(cuboid(Vec3::new(100.0, -5.0, -5.0), Vec3::new(300.0, 5.0, 5.0)));
     for off in [1e-5f32, 1e-4, 1e-3] {
         for side in [1.0, -1.0] {
-            let ray = |y: f32| Segment { origin: Vec3::new(0.0, y, 0.3), along: Vec3::X, t_min: 0.0, t_max: 1e3 };
+            let ray = |y: f32| Segment::bare(Vec3::new(0.0, y, 0.3), Vec3::X, 0.0, 1e3);
             assert!(!occluders.visible(&ray(side * (5.0 - off))), "{off} m inside");
             assert!(occluders.visible(&ray(side * (5.0 + off))), "{off} m outside");
         }

@@ -69,11 +69,16 @@ impl Occluders {
         (&self.bvh, &self.triangles)
     }
 
-    /// Whether nothing lies on the segment.
+    /// Whether nothing lies on the segment, but what it passes over.
     #[inline]
     pub fn visible(&self, segment: &Segment) -> bool {
-        let &Segment { origin, along, t_min, t_max } = segment;
-        self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| self.triangles[i].intersect(ray))
+        let &Segment { origin, along, t_min, t_max, .. } = segment;
+        self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| {
+            let triangle = &self.triangles[i];
+            let t = triangle.intersect(ray);
+            // Asked of what blocks the ray alone, once a ray or hardly more often.
+            if t < ray.tmax && segment.passes_over(triangle) { f32::INFINITY } else { t }
+        })
     }
 
     /// The first thing on a ray and its distance, which is exact to f32 rounding of the triangle's plane.
