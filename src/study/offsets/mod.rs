@@ -107,6 +107,7 @@ fn columns_of_counts() -> Vec<crate::record::study::ColumnRecord> {
     vec![
         column("rays", "rays", Format::Whole),
         column("undecided", "un-\ndecided", Format::Whole),
+        column("undecided_differ", "of which\ndiffer", Format::Whole),
         column("lit", "lit", Format::Whole),
         column("acne", "acne", Format::Whole),
         column("dark", "dark", Format::Whole),
@@ -177,6 +178,7 @@ fn starts_table() -> TableRecord {
 struct Counts {
     rays: u64,
     undecided: u64,
+    differ: u64,
     lit: u64,
     acne: u64,
     dark: u64,
@@ -189,6 +191,7 @@ impl AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.rays += other.rays;
         self.undecided += other.undecided;
+        self.differ += other.differ;
         self.lit += other.lit;
         self.acne += other.acne;
         self.dark += other.dark;
@@ -198,10 +201,14 @@ impl AddAssign for Counts {
 }
 
 impl Counts {
-    fn note(&mut self, truth: Truth, seen: bool) {
+    /// Counts a ray that is what `truth` says, lit without a tolerance if `exact`, and `seen` under the policy.
+    fn note(&mut self, truth: Truth, exact: bool, seen: bool) {
         self.rays += 1;
         match truth {
-            Truth::Undecided => self.undecided += 1,
+            Truth::Undecided => {
+                self.undecided += 1;
+                self.differ += u64::from(seen != exact);
+            }
             Truth::Lit => {
                 self.lit += 1;
                 self.acne += u64::from(!seen);
@@ -216,7 +223,8 @@ impl Counts {
     fn cells(self) -> impl Iterator<Item = Cell> {
         let decided = self.lit + self.dark;
         let wrong = (decided > 0).then(|| (self.acne + self.leaks) as f64 / decided as f64);
-        let whole = [self.rays, self.undecided, self.lit, self.acne, self.dark, self.leaks].map(Cell::from);
+        let whole =
+            [self.rays, self.undecided, self.differ, self.lit, self.acne, self.dark, self.leaks].map(Cell::from);
         whole.into_iter().chain([wrong.into(), self.tolerance.into()])
     }
 }
@@ -228,7 +236,7 @@ fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; POLICIES.le
     let occluders = Occluders::new(scene);
     let emitters = || scene.lights().iter().filter(|light| light.kind() == Kind::Triangle);
     let corners = scene.surfaces().iter().map(|surface| surface.corners).chain(emitters().map(Light::corners));
-    let tracer = Tracer::new(corners, tolerance);
+    let tracer = Tracer::new(corners);
     let found = (0..count).into_par_iter().map(|number| {
         let mut stream = Stream::keyed(&[seed, u64::from_le_bytes(*b"offsets\0"), number as u64]);
         let at = geometry::receiver(scene, &mut stream, number);
@@ -239,9 +247,9 @@ fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; POLICIES.le
             emitter += usize::from(own.is_some());
             let uv = stream.uniform2();
             let Ok(arrival) = contribution::<0b1111>(light, uv, &at) else { continue };
-            let truth = truth(&tracer, tolerance, &at, (light, own), uv);
+            let (truth, exact) = truth(&tracer, tolerance, &at, (light, own), uv);
             for ((_, offset), counts) in POLICIES.iter().zip(&mut counts) {
-                counts.note(truth, seen(&occluders, offset, &at, light, &arrival));
+                counts.note(truth, exact, seen(&occluders, offset, &at, light, &arrival));
             }
         }
         counts
@@ -258,8 +266,14 @@ fn seen(occluders: &Occluders, offset: &Offset, at: &Receiver, light: &Light, ar
     occluders.visible(&offset.segment(at, light, arrival.direction, arrival.distance))
 }
 
-/// What f64 sees; `own` is the light's triangle.
-fn truth(tracer: &Tracer, tolerance: f64, at: &Receiver, (light, own): (&Light, Option<usize>), uv: [f32; 2]) -> Truth {
+/// What f64 sees, with the tolerance and whether it sees the light without; `own` is the light's triangle.
+fn truth(
+    tracer: &Tracer,
+    tolerance: f64,
+    at: &Receiver,
+    (light, own): (&Light, Option<usize>),
+    uv: [f32; 2],
+) -> (Truth, bool) {
     let surface = at.surface as usize;
     let origin = tracer.on_plane(surface, at.position);
     let side = at.normal.as_dvec3().dot(tracer.unit_normal(surface)).signum();
@@ -274,8 +288,10 @@ fn truth(tracer: &Tracer, tolerance: f64, at: &Receiver, (light, own): (&Light, 
     // What is all but at an end's horizon may come to lie on either side of it.
     let above = side * tracer.unit_normal(surface).dot(way.direction * way.length.min(1e6));
     let before = own.map_or(f64::INFINITY, |own| tracer.height(own, origin));
-    if above.min(before) < tolerance {
-        return Truth::Undecided;
+    let own = [Some(surface), own];
+    match tracer.truth(&way, own, tolerance) {
+        Truth::Lit if above.min(before) >= tolerance => (Truth::Lit, true),
+        Truth::Dark if above.min(before) >= tolerance => (Truth::Dark, false),
+        _ => (Truth::Undecided, above.min(before) > 0.0 && tracer.truth(&way, own, 0.0) == Truth::Lit),
     }
-    tracer.truth(&way, [Some(surface), own])
 }

@@ -33,7 +33,6 @@ pub(super) struct Way {
 /// Triangles as they were rounded.
 pub(super) struct Tracer {
     triangles: Vec<Triangle>,
-    tolerance: f64,
 }
 
 struct Triangle {
@@ -46,8 +45,8 @@ struct Triangle {
 }
 
 impl Tracer {
-    pub(super) fn new(triangles: impl Iterator<Item = [Vec3; 3]>, tolerance: f64) -> Self {
-        Self { triangles: triangles.map(Triangle::new).collect(), tolerance }
+    pub(super) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        Self { triangles: triangles.map(Triangle::new).collect() }
     }
 
     /// The place on the plane of a triangle that a rounded place near it stands for.
@@ -65,14 +64,14 @@ impl Tracer {
         self.triangles[triangle].normal.normalize()
     }
 
-    /// What is on the way but the triangles `own`.
-    pub(super) fn truth(&self, way: &Way, own: [Option<usize>; 2]) -> Truth {
+    /// What is on the way but the triangles `own`; with a tolerance of 0 m, as good as never undecided.
+    pub(super) fn truth(&self, way: &Way, own: [Option<usize>; 2], tolerance: f64) -> Truth {
         let mut truth = Truth::Lit;
         for (i, triangle) in self.triangles.iter().enumerate() {
             if own.contains(&Some(i)) {
                 continue;
             }
-            match triangle.on(way, self.tolerance) {
+            match triangle.on(way, tolerance) {
                 Truth::Dark => return Truth::Dark,
                 Truth::Undecided => truth = Truth::Undecided,
                 Truth::Lit => {}
@@ -127,10 +126,10 @@ mod tests {
 
     #[test]
     fn a_ray_is_lit_dark_or_undecided_by_the_tolerance() {
-        let tracer = Tracer::new([[Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 4.0]].into_iter(), 1e-3);
+        let tracer = Tracer::new([[Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 4.0]].into_iter());
         let down = |x: f64, y: f64, from: f64, length: f64| {
             let way = Way { origin: DVec3::new(x, y, from), direction: DVec3::NEG_Z, length };
-            tracer.truth(&way, [None; 2])
+            tracer.truth(&way, [None; 2], 1e-3)
         };
         assert_eq!(down(1.0, 1.0, 1.0, 2.0), Truth::Dark);
         for (x, y) in [(0.002, 1.0), (1.0, 0.002), (1.998, 1.998)] {
@@ -142,11 +141,16 @@ mod tests {
         for (x, y) in [(0.0, 1.0), (1.0, 0.0005), (2.0, 2.0)] {
             assert_eq!(down(x, y, 1.0, 2.0), Truth::Undecided, "at an edge, at {x}, {y}");
         }
+        let exactly = |x: f64| {
+            let way = Way { origin: DVec3::new(x, 1.0, 1.0), direction: DVec3::NEG_Z, length: 2.0 };
+            tracer.truth(&way, [None; 2], 0.0)
+        };
+        assert_eq!([exactly(1e-9), exactly(-1e-9)], [Truth::Dark, Truth::Lit], "without a tolerance");
         assert_eq!(down(1.0, 1.0, 1.0, 1.0005), Truth::Undecided, "ends at it");
         assert_eq!(down(1.0, 1.0, 1.0, 0.99), Truth::Lit, "ends before it");
         assert_eq!(down(1.0, 1.0, -0.01, f64::INFINITY), Truth::Lit, "begins behind it");
         let way = Way { origin: DVec3::new(1.0, 1.0, 1.0), direction: DVec3::NEG_Z, length: 2.0 };
-        assert_eq!(tracer.truth(&way, [Some(0), None]), Truth::Lit, "its own triangle");
+        assert_eq!(tracer.truth(&way, [Some(0), None], 1e-3), Truth::Lit, "its own triangle");
         assert_eq!(tracer.on_plane(0, Vec3::new(1.0, 2.0, 0.25)), DVec3::new(1.0, 2.0, 0.0));
     }
 }
