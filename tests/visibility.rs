@@ -229,6 +229,70 @@ fn a_push_of_a_tenth_of_a_millimetre_fails_from_2_km_on() {
 }
 
 #[test]
+fn a_slope_of_kilometres_does_not_shadow_itself() {
+    // Corners so far off are rounded, and so is every height over the slope: to millimetres, far above a push near the origin.
+    let slope = |x: f32, y: f32| Vec3::new(x, y, 0.13 * x - 0.21 * y);
+    let corners = [slope(-9_000.0, -7_000.0), slope(8_000.0, -6_000.0), slope(500.0, 9_500.0)];
+    let mut parts = ground(12.0, vec![moon(Vec3::new(0.9, 0.1, 0.15), 1.0)]);
+    parts.surfaces = vec![Surface { corners, material: 0 }];
+    // A place that nothing is seen from, that the scene needs shadow rays.
+    parts.surfaces.extend(cuboid(Vec3::new(-60.0, -60.0, 90.0), Vec3::new(-50.0, -50.0, 91.0)));
+    let lit = |offset| {
+        let stage = stage_with(parts.clone(), LeaveOut::No, offset);
+        let mut rays = 0;
+        let light = &stage.scene().lights()[0];
+        let exact = |at: &Receiver| citylights::render::exact::shadowed(&stage, at, light, [0.0; 2], &mut rays);
+        let lit = stage.receivers().iter().map(exact).filter(|radiance| *radiance != DVec3::ZERO).count();
+        (lit, stage.receivers().len())
+    };
+    let (with, of) = lit(Offset::SCALED);
+    assert!(of > 500, "{of}");
+    assert_eq!(with, of, "lit under the default");
+    let (without, _) = lit(Offset::ORIGIN_PUSH);
+    assert!(without < of, "a push near the origin is too short here, or this is no test: {without} of {of}");
+}
+
+#[test]
+fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
+    // A wall and a poster a millimetre before it, and a lamp; the poster's own front is lit, the wall behind it is not.
+    let sheet = |y: f32, half: f32| {
+        let corner = |x: f32, z: f32| Vec3::new(x * half, y, 2.0 + z * half);
+        [
+            [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)],
+            [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        ]
+        .map(|corners| Surface { corners, material: 0 })
+    };
+    // Half a millimetre behind the poster, that is before the wall, there is a lamp and a lit panel that shines at the poster.
+    let mut lights = vec![point(Vec3::new(0.1, -5.0, 2.5), 100.0), point(Vec3::new(0.2, -0.000_5, 2.1), 100.0)];
+    lights.extend(panel(Vec3::new(-0.2, -0.000_5, 1.8), Vec3::X * 0.3, Vec3::Z * 0.3, 10.0));
+    let mut parts = ground(12.0, lights);
+    parts.surfaces.extend(sheet(0.0, 1.0));
+    parts.surfaces.extend(sheet(-0.001, 0.5));
+    let stage = stage_with(parts, LeaveOut::No, Offset::SCALED);
+    let seen = |from: Vec3, light: usize| {
+        let at = receiver(from, Vec3::NEG_Y);
+        let light = &stage.scene().lights()[light];
+        let arrival = contribution::<0b1111>(light, [0.4, 0.6], &at).expect("in front");
+        stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+    };
+    assert!(!seen(Vec3::new(0.3, 0.0, 2.2), 0), "the wall is in the poster's shadow");
+    assert!(seen(Vec3::new(0.7, 0.0, 2.2), 0), "the wall beside it is not");
+    assert!(seen(Vec3::new(0.3, -0.001, 2.2), 0), "nor is the poster");
+    let street = |light: usize| {
+        let at = receiver(Vec3::new(0.3, -4.0, 0.0), Vec3::Z);
+        let light = &stage.scene().lights()[light];
+        contribution::<0b1111>(light, [0.4, 0.6], &at).is_ok_and(|arrival| {
+            stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+        })
+    };
+    assert!(street(0), "the street sees the lamp before it");
+    for hidden in 1..4 {
+        assert!(!street(hidden), "light {hidden} is behind the poster");
+    }
+}
+
+#[test]
 fn rays_along_an_axis_beside_a_slab_are_not_lost() {
     // A sliver 2e-6 m wide at the origin, seen along an axis from far away: with the library's own inverse direction the
     // ray leaves the sliver's box, 2e-7 m beside it, after a metre or two.
