@@ -23,7 +23,7 @@ use citylights::measure::target::spread;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::influence::{Cutoff, Transfer};
-use citylights::scene::light::LightId;
+use citylights::scene::light::Light;
 use citylights::scene::needs::Needs;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::{Arrival, contribution};
@@ -60,7 +60,8 @@ fn main() {
 /// A shadow ray to come: from a receiver, over a direction and a distance.
 struct Question {
     from: Receiver,
-    light: LightId,
+    /// At hand, as where a pick is shaded.
+    light: Light,
     to: Arrival,
 }
 
@@ -82,7 +83,7 @@ fn questions(stage: &Stage) -> Vec<Question> {
         }
         let light = chosen?;
         let to = contribution::<0b1111>(&table[light as usize], rng.uniform2(), at).ok()?;
-        Some(Question { from: *at, light, to })
+        Some(Question { from: *at, light: table[light as usize], to })
     };
     stage.receivers().iter().filter_map(choose).collect()
 }
@@ -91,7 +92,7 @@ fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[
     let (bvh, triangles) = stage.occluders().parts();
     let segment = |question: &Question| {
         let Question { from, light, to } = question;
-        stage.offset().segment(from, &stage.scene().lights()[*light as usize], to.direction, to.distance)
+        stage.offset().segment(from, light, to.direction, to.distance)
     };
     let through_ours = || questions.iter().filter(|question| stage.occluders().visible(&segment(question))).count();
     let rays: Vec<Ray> = questions

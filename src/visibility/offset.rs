@@ -92,6 +92,12 @@ const PUSH: f32 = 2.0 * f32::EPSILON;
 /// Bound on the relative error of a dot product of rounded numbers, and of the normal in it.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
+/// How far a height over any plane may be off in a scene of that size, in metres: of a corner and two edges, on three axes; and
+/// as much again for the place where a ray met it.
+pub(super) fn rounding(size: Vec3) -> f32 {
+    2.0 * 3.0 * ROUNDING * size.element_sum()
+}
+
 /// Each coordinate moved by so many units in its last place. Near 0, where these vanish, `steps` of 256 stand for 2^-16 m.
 #[inline]
 fn stepped(place: Vec3, steps: Vec3) -> Vec3 {
@@ -132,12 +138,16 @@ impl Segment {
         Self { origin, along, t_min, t_max, near: Vec3::ZERO, far: Vec3::ZERO, short: 0.0 }
     }
 
-    /// Whether a triangle lies wholly behind the plane of an end, so that no true ray meets it before that end.
+    /// Whether a triangle that was met at `t` lies wholly behind the plane of an end, so that no true ray meets it before that
+    /// end. Heights of the whole scene are off by at most `rounding` m: above that, the meeting place alone says no.
     #[inline]
-    pub(super) fn passes_over(&self, triangle: &RtTriangle) -> bool {
-        let corner = triangle.v0 - Vec3A::from(self.origin);
-        is_behind(self.near, 0.0, corner, triangle)
-            || is_behind(self.far, self.short, corner - Vec3A::from(self.along), triangle)
+    pub(super) fn passes_over(&self, triangle: &RtTriangle, t: f32, rounding: f32) -> bool {
+        let corner = || triangle.v0 - Vec3A::from(self.origin);
+        let over_near = t * self.near.dot(self.along);
+        let over_far = (t - 1.0) * self.far.dot(self.along);
+        over_near < rounding && is_behind(self.near, 0.0, corner(), triangle)
+            || over_far < (self.short + rounding) * self.far.abs().element_sum()
+                && is_behind(self.far, self.short, corner() - Vec3A::from(self.along), triangle)
     }
 }
 
