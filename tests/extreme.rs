@@ -90,8 +90,10 @@ fn one_light_among_a_million_is_found() {
     let truth = sum("all", 1);
     assert!(truth > 0.0);
     // Whoever looks at what a light can add at the point finds the one that adds anything.
-    for name in ["intensity", "light-tree"] {
+    // A cluster of a tree may hold the lamp and bulbs.
+    for (name, tolerance) in [("intensity", 0.01), ("light-tree", 0.3)] {
         let found = sum(name, 16) / truth;
-        assert!((found - 1.0).abs() < 0.1, "{name}: {found} of the light");
+        assert!((found - 1.0).abs() < tolerance, "{name}: {found} of the light");
     }
+    assert!(sum("power", 16) / truth < 0.01, "by strength alone it is hardly ever chosen");
 }

@@ -217,7 +217,7 @@ fn variances(stage: &Stage) -> Vec<(String, f64)> {
         };
         let variances: Vec<f64> = stage.receivers().iter().filter_map(known).collect();
         if !variances.is_empty() {
-            found.push((info.name.to_owned(), Moments::of(variances.into_iter()).mean));
+            found.push((info.name.to_owned(), Moments::of(variances).mean));
         }
     }
     found
