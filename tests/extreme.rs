@@ -95,5 +95,4 @@ fn one_light_among_a_million_is_found() {
         let found = sum(name, 16) / truth;
         assert!((found - 1.0).abs() < tolerance, "{name}: {found} of the light");
     }
-    assert!(sum("power", 16) / truth < 0.01, "by strength alone it is hardly ever chosen");
 }
