@@ -80,21 +80,18 @@ impl Occluders {
         let mut last = (0, f32::INFINITY);
         let free = self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| {
             let t = self.triangles[i].intersect(ray);
-            if t < ray.tmax {
-                last = (i, t);
-            }
+            last = (i, t);
             t
         });
-        // Asked of the one triangle that ended the way: asked within the loop, it made a ray 15 % slower. By value, so that a
-        // segment need not lie in memory for what is seldom called.
-        free || (segment.passes_over(&self.triangles[last.0], last.1, self.rounding) && self.visible_beyond(*segment))
+        // Asked of the one triangle that ended the way: asked within the loop, it made a ray 15 % slower.
+        free || (segment.passes_over(&self.triangles[last.0], last.1, self.rounding) && self.visible_beyond(segment))
     }
 
     /// The same where something was met that is passed over: seldom.
     #[cold]
     #[inline(never)]
-    fn visible_beyond(&self, segment: Segment) -> bool {
-        let Segment { origin, along, t_min, t_max, .. } = segment;
+    fn visible_beyond(&self, segment: &Segment) -> bool {
+        let &Segment { origin, along, t_min, t_max, .. } = segment;
         self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| {
             let t = self.triangles[i].intersect(ray);
             let passed = t < ray.tmax && segment.passes_over(&self.triangles[i], t, self.rounding);
