@@ -23,6 +23,7 @@ use citylights::measure::target::spread;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::light::Light;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::needs::Needs;
 use citylights::scene::receiver::Receiver;
@@ -60,6 +61,8 @@ fn main() {
 /// A shadow ray to come: from a receiver, over a direction and a distance.
 struct Question {
     from: Receiver,
+    /// At hand, as where a pick is shaded.
+    light: Light,
     to: Arrival,
 }
 
@@ -72,28 +75,31 @@ fn questions(stage: &Stage) -> Vec<Question> {
         let mut rng = Stream::keyed(&[1, u64::from(at.pixel)]);
         let (mut total, mut chosen) = (0.0, None);
         for _ in 0..CANDIDATES {
-            let light = &table[stage.lights()[rng.below(stage.lights().len())] as usize];
-            let weight = f64::from(importance(light, at));
+            let light = stage.lights()[rng.below(stage.lights().len())];
+            let weight = f64::from(importance(&table[light as usize], at));
             total += weight;
             if rng.uniform64() * total < weight {
                 chosen = Some(light);
             }
         }
-        let to = contribution::<0b1111>(LightSampling::Area, chosen?, rng.uniform2(), at).ok()?;
-        Some(Question { from: *at, to })
+        let light = chosen?;
+        let to = contribution::<0b1111>(LightSampling::Area, &table[light as usize], rng.uniform2(), at).ok()?;
+        Some(Question { from: *at, light: table[light as usize], to })
     };
     stage.receivers().iter().filter_map(choose).collect()
 }
 
 fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[Question]) {
     let (bvh, triangles) = stage.occluders().parts();
-    let segment =
-        |question: &Question| stage.offset().segment(&question.from, question.to.direction, question.to.distance);
+    let segment = |question: &Question| {
+        let Question { from, light, to } = question;
+        stage.offset().segment(from, light, to.direction, to.distance)
+    };
     let through_ours = || questions.iter().filter(|question| stage.occluders().visible(&segment(question))).count();
     let rays: Vec<Ray> = questions
         .iter()
         .map(|question| {
-            let Segment { origin, along, t_min, t_max } = segment(question);
+            let Segment { origin, along, t_min, t_max, .. } = segment(question);
             Ray::new(origin.into(), along.into(), t_min, t_max)
         })
         .collect();

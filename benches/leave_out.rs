@@ -95,13 +95,12 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
             for call in calls.by_ref().take(PASSES as usize) {
                 let mut radiance = DVec3::ZERO;
                 for pick in call {
-                    let Ok(arrival) =
-                        contribution::<KINDS>(LightSampling::Area, &lights[pick.light as usize], pick.uv, at)
-                    else {
+                    let light = &lights[pick.light as usize];
+                    let Ok(arrival) = contribution::<KINDS>(LightSampling::Area, light, pick.uv, at) else {
                         continue;
                     };
                     if BLOCKED {
-                        let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+                        let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
                         if !stage.occluders().visible(&segment) {
                             continue;
                         }

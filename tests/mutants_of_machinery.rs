@@ -197,9 +197,10 @@ impl Strategy for Neighbours {
 
 impl Reuse {
     fn sees(&self, at: &Receiver, light: LightId) -> bool {
-        let Shape::Point { position: place, .. } = self.scene.lights()[light as usize].shape() else { return true };
+        let light = &self.scene.lights()[light as usize];
+        let Shape::Point { position: place, .. } = light.shape() else { return true };
         let to = place - at.position;
-        self.occluded.visible(&self.offset.segment(at, to.normalize(), to.length()))
+        self.occluded.visible(&self.offset.segment(at, light, to.normalize(), to.length()))
     }
 }
 

@@ -325,6 +325,53 @@ fn growth_is_recorded_with_its_exponents() {
     assert_eq!(cells(&study, "exponents", "influence", "exponent").len(), 3, "an error that does not fall has none");
 }
 
+/// The figure of a policy in a table of the study of offsets.
+fn offset_figure(study: &Study, table: &str, distance: Option<u64>, policy: &str, column: &str) -> Option<f64> {
+    let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");
+    let (record, rows) = (&study.record.tables[at], &study.rows[at]);
+    let place = |name: &str| record.column(name).unwrap_or_else(|| panic!("no column {name} in {table}"));
+    let row = rows.iter().find(|cells| {
+        cells[place("policy")] == policy.into()
+            && distance.is_none_or(|distance| cells[place("distance_m")] == distance.into())
+    });
+    row.unwrap_or_else(|| panic!("no {policy} in {table}"))[place(column)].number()
+}
+
+#[test]
+fn only_the_default_offset_has_neither_acne_nor_leaks_far_from_the_origin() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options { receivers: 4_000, ..options(folder.path(), "power") };
+    let study = ran("offsets", &options, folder.path());
+    let figure =
+        |distance, policy, column| offset_figure(&study, "totals", Some(distance), policy, column).expect("a figure");
+    for distance in [0, 1_000, 2_048, 10_000] {
+        let (lit, dark) = (figure(distance, "scaled", "lit"), figure(distance, "scaled", "dark"));
+        let undecided = figure(distance, "scaled", "undecided") / figure(distance, "scaled", "rays");
+        assert!(lit > 20_000.0 && dark > 20_000.0 && undecided < 0.25, "{distance} m: {lit}, {dark}, {undecided}");
+        assert_eq!(figure(distance, "scaled", "acne"), 0.0, "at {distance} m");
+        assert_eq!(figure(distance, "scaled", "leaks"), 0.0, "at {distance} m");
+    }
+    // A ten-thousandth of a metre is nothing from 2,048 m on.
+    assert!(figure(1_000, "origin-push", "acne") < 10.0, "{}", figure(1_000, "origin-push", "acne"));
+    assert!(figure(2_048, "origin-push", "acne") > 0.4 * figure(2_048, "origin-push", "lit"));
+    // A grazing ray meets its own surface farther off than that.
+    assert!(figure(1_000, "t-min", "acne") > 0.05 * figure(1_000, "t-min", "lit"));
+    // 256 units reach through walls.
+    assert!(figure(10_000, "ulps", "leaks") > 0.1 * figure(10_000, "ulps", "dark"));
+    assert_eq!(figure(1_000_000, "ulps", "leaks"), figure(1_000_000, "ulps", "dark"), "all of it leaks");
+
+    let start = |policy: &str, column: String| offset_figure(&study, "starts", None, policy, &column);
+    for geometry in ["flat", "grazing", "concave"] {
+        for failure in ["acne", "leaks"] {
+            assert_eq!(start("scaled", format!("{geometry}_{failure}_m")), None, "{geometry}, {failure}");
+        }
+        assert!(start("ulps", format!("{geometry}_leaks_m")).is_some_and(|m| m <= 1_024.0), "{geometry}");
+        assert!(start("t-min", format!("{geometry}_acne_m")).is_some_and(|m| m <= 1_024.0), "{geometry}");
+        assert!(start("origin-push", format!("{geometry}_acne_m")).is_some_and(|m| m <= 2_048.0), "{geometry}");
+        assert_eq!(start("origin-push", format!("{geometry}_leaks_m")), None, "{geometry}");
+    }
+}
+
 #[test]
 fn a_scene_without_a_city_cannot_be_grown() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -108,7 +108,7 @@ fn a_hundred_thousand_segments_agree_with_a_tracer_in_f64() {
         }
         let length = from.distance(to);
         let direction = (to - from) / length;
-        let found = !occluders.visible(&Segment { origin: from, along: direction, t_min: 0.0, t_max: length });
+        let found = !occluders.visible(&Segment::bare(from, direction, 0.0, length));
         let (origin, along) = (from.as_dvec3(), direction.as_dvec3());
         let mut wanted = Verdict::Miss;
         for (chunk, &(low, high)) in triangles.chunks(12.min(triangles.len())).zip(&boxes) {
@@ -169,9 +169,10 @@ fn emitters_block_themselves_unless_the_far_end_is_short() {
         for at in stage.receivers() {
             for light in stage.scene().lights() {
                 let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], at) else { continue };
-                let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+                let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
                 rays += 1;
-                seen += u32::from(stage.occluders().visible(&Segment { t_max: 1.0 + 1e-5, ..segment }));
+                let Segment { origin, along, t_min, .. } = segment;
+                seen += u32::from(stage.occluders().visible(&Segment::bare(origin, along, t_min, 1.0 + 1e-5)));
             }
         }
         println!("{name}: {seen} of {rays} rays see the light that they end a hair beyond");
@@ -230,6 +231,72 @@ fn a_push_of_a_tenth_of_a_millimetre_fails_from_2_km_on() {
 }
 
 #[test]
+fn a_slope_of_kilometres_does_not_shadow_itself() {
+    // Corners so far off are rounded, and so is every height over the slope: to millimetres, far above a push near the origin.
+    let slope = |x: f32, y: f32| Vec3::new(x, y, 0.13 * x - 0.21 * y);
+    let corners = [slope(-9_000.0, -7_000.0), slope(8_000.0, -6_000.0), slope(500.0, 9_500.0)];
+    let mut parts = ground(12.0, vec![moon(Vec3::new(0.9, 0.1, 0.15), 1.0)]);
+    parts.surfaces = vec![Surface { corners, material: 0 }];
+    // A place that nothing is seen from, that the scene needs shadow rays.
+    parts.surfaces.extend(cuboid(Vec3::new(-60.0, -60.0, 90.0), Vec3::new(-50.0, -50.0, 91.0)));
+    let lit = |offset| {
+        let stage = stage_with(parts.clone(), LeaveOut::No, offset);
+        let mut rays = 0;
+        let light = &stage.scene().lights()[0];
+        let exact = |at: &Receiver| {
+            citylights::render::exact::shadowed(&stage, LightSampling::Area, at, light, [0.0; 2], &mut rays)
+        };
+        let lit = stage.receivers().iter().map(exact).filter(|radiance| *radiance != DVec3::ZERO).count();
+        (lit, stage.receivers().len())
+    };
+    let (with, of) = lit(Offset::SCALED);
+    assert!(of > 500, "{of}");
+    assert_eq!(with, of, "lit under the default");
+    let (without, _) = lit(Offset::ORIGIN_PUSH);
+    assert!(without < of, "a push near the origin is too short here, or this is no test: {without} of {of}");
+}
+
+#[test]
+fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
+    // A wall and a poster a millimetre before it, and a lamp; the poster's own front is lit, the wall behind it is not.
+    let sheet = |y: f32, half: f32| {
+        let corner = |x: f32, z: f32| Vec3::new(x * half, y, 2.0 + z * half);
+        [
+            [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)],
+            [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        ]
+        .map(|corners| Surface { corners, material: 0 })
+    };
+    // Half a millimetre behind the poster, that is before the wall, there is a lamp and a lit panel that shines at the poster.
+    let mut lights = vec![point(Vec3::new(0.1, -5.0, 2.5), 100.0), point(Vec3::new(0.2, -0.000_5, 2.1), 100.0)];
+    lights.extend(panel(Vec3::new(-0.2, -0.000_5, 1.8), Vec3::X * 0.3, Vec3::Z * 0.3, 10.0));
+    let mut parts = ground(12.0, lights);
+    parts.surfaces.extend(sheet(0.0, 1.0));
+    parts.surfaces.extend(sheet(-0.001, 0.5));
+    let stage = stage_with(parts, LeaveOut::No, Offset::SCALED);
+    let seen = |from: Vec3, light: usize| {
+        let at = receiver(from, Vec3::NEG_Y);
+        let light = &stage.scene().lights()[light];
+        let arrival = contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], &at).expect("in front");
+        stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+    };
+    assert!(!seen(Vec3::new(0.3, 0.0, 2.2), 0), "the wall is in the poster's shadow");
+    assert!(seen(Vec3::new(0.7, 0.0, 2.2), 0), "the wall beside it is not");
+    assert!(seen(Vec3::new(0.3, -0.001, 2.2), 0), "nor is the poster");
+    let street = |light: usize| {
+        let at = receiver(Vec3::new(0.3, -4.0, 0.0), Vec3::Z);
+        let light = &stage.scene().lights()[light];
+        contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], &at).is_ok_and(|arrival| {
+            stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+        })
+    };
+    assert!(street(0), "the street sees the lamp before it");
+    for hidden in 1..4 {
+        assert!(!street(hidden), "light {hidden} is behind the poster");
+    }
+}
+
+#[test]
 fn rays_along_an_axis_beside_a_slab_are_not_lost() {
     // A sliver 2e-6 m wide at the origin, seen along an axis from far away: with the library's own inverse direction the
     // ray leaves the sliver's box, 2e-7 m beside it, after a metre or two.
@@ -244,11 +311,14 @@ fn rays_along_an_axis_beside_a_slab_are_not_lost() {
             let (_, occluders) = occluders(surfaces.to_vec());
             for distance in [50.0, 90.0, 200.0, 2_000.0] {
                 let origin = direction * -distance;
-                let ray = Segment { origin, along: direction, t_min: 0.0, t_max: 1e4 };
+                let ray = Segment::bare(origin, direction, 0.0, 1e4);
                 assert!(!occluders.visible(&ray), "{direction} from {distance} m");
                 // The same ray with negative zeros.
                 let negative = Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(-0.0), direction);
-                assert!(!occluders.visible(&Segment { along: negative, ..ray }), "{negative:?} from {distance} m");
+                assert!(
+                    !occluders.visible(&Segment::bare(origin, negative, 0.0, 1e4)),
+                    "{negative:?} from {distance} m"
+                );
                 assert!(occluders.first(origin, negative.as_dvec3()).is_some());
             }
         }
@@ -260,7 +330,7 @@ fn rays_that_graze_the_side_of_a_block_agree_with_its_shape() {
     let (_, occluders) = occluders(cuboid(Vec3::new(100.0, -5.0, -5.0), Vec3::new(300.0, 5.0, 5.0)));
     for off in [1e-5f32, 1e-4, 1e-3] {
         for side in [1.0, -1.0] {
-            let ray = |y: f32| Segment { origin: Vec3::new(0.0, y, 0.3), along: Vec3::X, t_min: 0.0, t_max: 1e3 };
+            let ray = |y: f32| Segment::bare(Vec3::new(0.0, y, 0.3), Vec3::X, 0.0, 1e3);
             assert!(!occluders.visible(&ray(side * (5.0 - off))), "{off} m inside");
             assert!(occluders.visible(&ray(side * (5.0 + off))), "{off} m outside");
         }

@@ -83,6 +83,6 @@ pub fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &
 pub fn shadowed(stage: &Stage, by: LightSampling, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
     let Ok(arrival) = contribution::<0b1111>(by, light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
-    let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+    let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
     if stage.occluders().visible(&segment) { arrival.radiance.as_dvec3() } else { DVec3::ZERO }
 }

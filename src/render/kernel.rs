@@ -87,7 +87,7 @@ fn shade_pick<const KINDS: u8, const OCCLUSION: bool, const COUNTING: bool>(
         }
     };
     if OCCLUSION {
-        let segment = stage.offset().segment(at, arrival.direction, arrival.distance);
+        let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
         let visible = stage.occluders().visible(&segment);
         if COUNTING {
             counts.shadow_rays += 1;

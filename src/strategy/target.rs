@@ -54,9 +54,10 @@ impl Target {
     pub(super) fn of_visible_point<T: Tally>(&self, pick: &Pick, at: &Receiver, tally: &mut T) -> f32 {
         let Some(arrival) = self.arrival(pick, at, tally) else { return 0.0 };
         let Some(occluders) = &self.occluders else { return value(arrival) };
+        let light = &self.scene.lights()[pick.light as usize];
         tally.shadow_rays(1);
         // The very ray that the harness would cast: what is hidden here is hidden there.
-        let segment = self.offset.segment(at, arrival.direction, arrival.distance);
+        let segment = self.offset.segment(at, light, arrival.direction, arrival.distance);
         if occluders.visible(&segment) { value(arrival) } else { 0.0 }
     }
 

@@ -8,6 +8,7 @@
 mod area;
 mod cutoff;
 pub mod fit;
+mod offsets;
 mod plane;
 pub mod quality;
 mod scaling;
@@ -32,7 +33,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Every study, in the order of `citylights list studies`.
-pub const STUDIES: [Entry; 4] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY];
+pub const STUDIES: [Entry; 5] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
 
 /// A study that can be named.
 #[derive(Clone, Copy)]
@@ -53,7 +54,7 @@ pub struct Options {
     pub overrides: Overrides,
     /// The strategies, as a list with parameters, instead of the study's own.
     pub strategies: Option<String>,
-    /// Receivers drawn by area of street and facade, for what needs no rays.
+    /// Receivers drawn by area, for what needs no rays or only a few.
     pub receivers: usize,
     /// Receivers that errors are taken over.
     pub pixels: usize,

@@ -37,8 +37,8 @@ pub const CHANCES: usize = CHANGES.len();
 /// What is done to a scene, and how far apart the images may be, as a share of the mean.
 ///
 /// Receivers and corners are rounded anew, and shadow rays keep off surfaces by a share of the greatest coordinate: a light
-/// on the edge of a shadow may come or go. 10^5 m from the origin coordinates are rounded to 8 mm and rays keep off by 10 cm
-/// where they start, by 40 cm where they end: the image is the same in its mean only.
+/// on the edge of a shadow may come or go. 10^5 m from the origin coordinates are rounded to 8 mm, and rays keep off by 2 cm
+/// where they start and where they end: the image is the same in its mean only.
 const CHANGES: [(&str, Change, f64); 8] = [
     ("scaled-0.01", Change::Scaled(0.01), 1e-3),
     ("scaled-100", Change::Scaled(100.0), 1e-3),
