@@ -59,6 +59,7 @@ fn record() -> StudyRecord {
         flags: "release".into(),
         warnings: Vec::new(),
         finished: false,
+        pictures: Vec::new(),
         wall_s: 0.0,
         notes: vec!["as of today".into()],
         tables: vec![TableRecord {
