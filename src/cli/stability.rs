@@ -90,7 +90,12 @@ fn line(name: &str, width: usize, finding: &Finding) -> String {
 
 /// Worst and 99 % error; then how many were NaN, infinite or negative.
 fn errors(tally: &Tally) -> String {
-    format!("{:>8} {:>8} {:>5}", short(tally.worst()), short(tally.p99()), format!("{}/{}/{}", tally.nan, tally.infinite, tally.negative))
+    format!(
+        "{:>8} {:>8} {:>5}",
+        short(tally.worst()),
+        short(tally.p99()),
+        format!("{}/{}/{}", tally.nan, tally.infinite, tally.negative)
+    )
 }
 
 fn short(error: f64) -> String {

@@ -91,8 +91,7 @@ impl Seen {
         let [a, b, c] = self.corners;
         let [la, lb, lc] = self.lengths;
         let (ab, bc, ca) = (b - a, c - b, a - c);
-        let (nab, nbc, nca) =
-            (edge_normal(a, b, la, lb), edge_normal(b, c, lb, lc), edge_normal(c, a, lc, la));
+        let (nab, nbc, nca) = (edge_normal(a, b, la, lb), edge_normal(b, c, lb, lc), edge_normal(c, a, lc, la));
         let (kab, kbc, kca) = (la * lb + a.dot(b), lb * lc + b.dot(c), lc * la + c.dot(a));
         // Squared tangents of half the edges' angles.
         let (nab2, nbc2, nca2) = (nab.length_squared(), nbc.length_squared(), nca.length_squared());

@@ -145,8 +145,7 @@ impl Arc {
         let edge_normal = edge_normal(pole.0, end.0, pole.1, end.1);
         let length = edge_normal.length();
         let at_pole = normal.dot(pole.0) / pole.1;
-        let at_right =
-            if length > 0.0 { normal.dot(edge_normal.cross(pole.0)) / (length * pole.1) } else { 0.0 };
+        let at_right = if length > 0.0 { normal.dot(edge_normal.cross(pole.0)) / (length * pole.1) } else { 0.0 };
         Self { at_pole, at_right, angle: arctan2(length, pole.0.dot(end.0)), edge_normal2: length * length }
     }
 

@@ -47,8 +47,8 @@ impl Seen {
         let denominator = product + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la;
         // Rounding leaves errors of a few 1e-16 of these products: up to a hundred-millionth may be wrong.
         let rounded = 1.6e-15 * (la * la) * to_b.length_squared() * to_c.length_squared();
-        let cancelled = triple * triple <= rounded
-            || triple * triple + denominator * denominator <= 1e-15 * (product * product);
+        let cancelled =
+            triple * triple <= rounded || triple * triple + denominator * denominator <= 1e-15 * (product * product);
         if cancelled { self.tangent_of_more_digits() } else { (triple, denominator) }
     }
 
@@ -64,8 +64,7 @@ impl Seen {
         }
         let length = |p| Double::dot(p, p).sqrt();
         let (la, lb, lc) = (length(a), length(b), length(c));
-        let denominator =
-            la * lb * lc + Double::dot(a, b) * lc + Double::dot(a, c) * lb + Double::dot(b, c) * la;
+        let denominator = la * lb * lc + Double::dot(a, b) * lc + Double::dot(a, c) * lb + Double::dot(b, c) * la;
         (triple, denominator.high)
     }
 
