@@ -15,7 +15,6 @@
 //! | `triangle/irradiance` | the same, for a receiver whose horizon cuts one in ten | 100 ns or less, better 60 |
 //! | `triangle/solid-angle-sample` | sampler and a point of it | 160 ns or less, better 80 |
 //! | `triangle/projected-sample` | the same over the irradiance | |
-//! | `triangle/area-sample`, `triangle/low-distortion-sample` | a point alone, for comparison | |
 //! | `power/without-ray` | a pick by flux and its shading, everything but the ray | 150 ns or less |
 
 mod common;
@@ -24,7 +23,7 @@ use citylights::base::colour::luminance;
 use citylights::base::discrete::AliasTable;
 use citylights::base::draws::Points;
 use citylights::base::random::{RunKey, Stream};
-use citylights::base::triangle::{Projected, Seen, SolidAngle, low_distortion_point, uniform_point};
+use citylights::base::triangle::{Projected, Seen, SolidAngle};
 use citylights::measure::target::spread;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
@@ -40,7 +39,7 @@ use citylights::visibility::influence::InfluenceTree;
 use citylights::visibility::offset::Segment;
 use citylights::visibility::stage::Stage;
 use common::{CPU_TIME, Duel, RATIO, Reported};
-use criterion::{Criterion, SamplingMode, Throughput};
+use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
 use glam::DVec3;
 use obvhs::ray::Ray;
 use std::hint::black_box;
@@ -171,18 +170,28 @@ fn triangles(criterion: &mut Criterion<Reported>) {
         .collect();
     let numbers: Vec<[f64; 2]> = (0..COUNT).map(|_| [rng.uniform64(), rng.uniform64()]).collect();
     let mut group = common::flat(criterion, "triangle");
-    let mut bench = |name: &str, one: fn(Seen, DVec3, [f64; 2]) -> f64| {
-        let all = || posed.iter().zip(&numbers).map(|(&(corners, normal), &u)| one(Seen::new(corners), normal, u));
-        group.bench_function(name, |b| common::per_element(b, COUNT, || all().sum::<f64>()));
-    };
-    bench("solid-angle", |seen, _, _| seen.solid_angle());
-    bench("irradiance", |seen, normal, _| seen.irradiance(normal));
+    let mut bench = Bench { group: &mut group, posed: &posed, numbers: &numbers };
+    bench.of("solid-angle", |seen, _, _| seen.solid_angle());
+    bench.of("irradiance", |seen, normal, _| seen.irradiance(normal));
     let sum = |[b1, b2]: [f64; 2]| b1 + b2;
-    bench("solid-angle-sample", move |seen, _, u| SolidAngle::new(&seen).map_or(0.0, |s| sum(s.sample(u))));
-    bench("projected-sample", move |seen, normal, u| Projected::new(&seen, normal).map_or(0.0, |s| sum(s.sample(u))));
-    bench("area-sample", |_, _, u| f64::from(uniform_point(u.map(|x| x as f32))[0]));
-    bench("low-distortion-sample", |_, _, u| f64::from(low_distortion_point(u.map(|x| x as f32))[0]));
+    bench.of("solid-angle-sample", |seen, _, u| SolidAngle::new(&seen).map_or(0.0, |s| sum(s.sample(u))));
+    bench.of("projected-sample", |seen, normal, u| Projected::new(&seen, normal).map_or(0.0, |s| sum(s.sample(u))));
     group.finish();
+}
+
+/// Triangles from their corners on.
+struct Bench<'a, 'b> {
+    group: &'a mut BenchmarkGroup<'b, Reported>,
+    posed: &'a [([DVec3; 3], DVec3)],
+    numbers: &'a [[f64; 2]],
+}
+
+impl Bench<'_, '_> {
+    fn of(&mut self, name: &str, one: impl Fn(Seen, DVec3, [f64; 2]) -> f64) {
+        let (posed, numbers) = (self.posed, self.numbers);
+        let all = || posed.iter().zip(numbers).map(|(&(corners, normal), &u)| one(Seen::new(corners), normal, u));
+        self.group.bench_function(name, |b| common::per_element(b, posed.len(), || all().sum::<f64>()));
+    }
 }
 
 fn light_tree_pick(criterion: &mut Criterion<Reported>, scene: &str, stage: &Stage, arities: &[u32]) {

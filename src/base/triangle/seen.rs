@@ -29,7 +29,7 @@ impl Seen {
     /// distance. Where even this cancels (slivers, grazing planes, a corner or an edge at the receiver), it is taken again in twice the digits.
     ///
     /// Source: Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.
-    #[inline]
+    #[inline(always)]
     pub fn solid_angle(&self) -> f64 {
         let (triple, denominator) = self.tangent();
         (2.0 * arctan2(triple.abs(), denominator)).copysign(triple)
@@ -37,7 +37,7 @@ impl Seen {
 
     /// Numerator and denominator of the tangent of half the solid angle: `a·(b×c)` and the printed denominator, 0 where the
     /// numerator is 0.
-    #[inline]
+    #[inline(always)]
     fn tangent(&self) -> (f64, f64) {
         let [a, b, c] = self.corners;
         let [la, lb, lc] = self.lengths;
