@@ -69,16 +69,21 @@ fn polynomial<const N: usize>(c: &[f64; N], z: f64) -> f64 {
 pub(super) fn arctan2(y: f64, x: f64) -> f64 {
     let width = x.abs();
     let (low, high) = if y > width { (width, y) } else { (y, width) };
-    // The triangle is turned back by a multiple of pi/8 so that a short polynomial does. Tables instead of branches: which
-    // one it is, no processor guesses.
-    let turn = usize::from(low > TAN_PI_16 * high) + usize::from(low > TAN_3_PI_16 * high);
-    let (turn_tan, turn) = ([0.0, TAN_PI_8, 1.0][turn], [0.0, FRAC_PI_8, FRAC_PI_4][turn]);
+    // The triangle is turned back by a multiple of pi/8 so that a short polynomial does. (Tables or masks in place of the
+    // branches, which are hard to foresee: no faster.)
+    let (turn_tan, turn) = if low <= TAN_PI_16 * high {
+        (0.0, 0.0)
+    } else if low <= TAN_3_PI_16 * high {
+        (TAN_PI_8, FRAC_PI_8)
+    } else {
+        (1.0, FRAC_PI_4)
+    };
     // The smallest number: nothing over nothing.
     let t = (low - turn_tan * high) / (high + turn_tan * low + f64::MIN_POSITIVE);
     let z = t * t;
     let angle = turn + (t - t * z * polynomial(&NEAR, z));
-    let octant = usize::from(y > width) + 2 * usize::from(x < 0.0);
-    [0.0, FRAC_PI_2, PI, FRAC_PI_2][octant] + [1.0, -1.0, -1.0, 1.0][octant] * angle
+    let angle = if y > width { FRAC_PI_2 - angle } else { angle };
+    if x < 0.0 { PI - angle } else { angle }
 }
 
 /// `1 - atan(t)/t` for `z = t^2` up to [`DEFECT_LIMIT`]: of all digits, however small.

@@ -87,13 +87,14 @@ impl Seen {
 
 /// `a×b` for two corners and their distances, of digits enough also where both lie on nearly one line with the receiver.
 ///
-/// Written as the shorter one times the edge: far away two corners are nearly one vector, and their own product has no digits.
+/// Written as the shorter one times the edge: far away two corners are nearly one vector, and of their own product too few digits
+/// are left to say where the edge crosses the horizon.
 #[inline(always)]
 pub(super) fn edge_normal(a: DVec3, b: DVec3, la: f64, lb: f64) -> DVec3 {
     let edge = b - a;
     let (short, length) = if la <= lb { (a, la) } else { (b, lb) };
     let normal = short.cross(edge);
-    // Rounding leaves 1e-16 of this product: here under a hundred-thousandth of a millionth is right no more.
+    // Rounding leaves 1e-16 of this product, so that from here on fewer than eleven digits would be right.
     if normal.length_squared() <= 1e-10 * (length * length) * edge.length_squared() {
         return normal_of_more_digits(a, b);
     }
