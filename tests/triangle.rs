@@ -5,44 +5,13 @@
 use citylights::base::random::Stream;
 use citylights::base::statistics::sidak;
 use citylights::base::triangle::{Projected, Seen, SolidAngle};
+use citylights::stability::precise;
 use citylights::stability::triangles::{FAMILIES, Posed};
-use citylights::stability::vectors::{CATEGORIES, judge, parse};
-use citylights::stability::{CASES, precise};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::PI;
-
-/// A few rows of each category of the exact values that the project was given.
-const VECTORS: &[u8] = include_bytes!("data/triangle.csv");
-
-#[test]
-fn exact_values_are_met_in_every_category() {
-    let rows = parse(VECTORS, "tests/data/triangle.csv".as_ref()).expect("vectors");
-    let judged = judge(&rows);
-    assert_eq!(judged.len(), CATEGORIES.len());
-    for one in judged {
-        assert_eq!(one.solid_angle.ours.count(), 5, "{}", one.category);
-        assert!(one.passed(), "{one:?}");
-        // Far inside the limits, so that another set of vectors is met as well.
-        assert!(one.solid_angle.ours.worst() < 1e-9, "{one:?}");
-        assert!(one.irradiance.ours.worst() < 1e-8, "{one:?}");
-        if one.category == "distant" {
-            let textbook = one.solid_angle.textbook.expect("the formula in f32").worst();
-            assert!(textbook > 1000.0 * 2e-6, "the textbook is off by {textbook} alone");
-        }
-    }
-}
-
-#[test]
-fn every_built_in_case_is_right() {
-    for case in CASES {
-        let finding = (case.run)();
-        assert!(finding.passed(), "{}: worst {:e} of {:e}", case.name, finding.ours.worst(), finding.limit);
-        assert!(finding.ours.count() > 100, "{}", case.name);
-    }
-}
 
 /// A triangle of one of the families.
 fn family(name: &str, seed: u64) -> Posed {
@@ -84,7 +53,9 @@ fn sized(solid_angle: f64, stream: &mut Stream) -> [DVec3; 3] {
 #[test]
 fn the_density_is_one_over_the_solid_angle_from_a_billionth_to_half_the_sphere() {
     let mut stream = Stream::keyed(&[41]);
-    for solid_angle in [1e-12, 1e-9, 1e-7, 1e-5, 3e-4, 1e-3, 0.1, 1.0, 3.0, PI, 4.0, 6.0, 6.2, 6.28, 6.2831] {
+    for solid_angle in
+        [1e-12, 1e-9, 1e-7, 1e-5, 3e-4, 1e-3, 0.1, 1.0, 3.0, PI, 4.0, 6.0, 6.2, 2.0 * PI - 3e-3, 2.0 * PI - 1e-4]
+    {
         let seen = Seen::new(sized(solid_angle, &mut stream));
         let exact = precise::solid_angle(seen_corners(&seen)).abs();
         assert!((exact / solid_angle - 1.0).abs() < 1e-6, "{exact} for {solid_angle}");
@@ -106,7 +77,7 @@ fn seen_corners(seen: &Seen) -> [[f64; 3]; 3] {
 fn the_projected_density_is_the_cosine_over_the_irradiance() {
     let mut stream = Stream::keyed(&[43]);
     let mut cut = 0;
-    for solid_angle in [1e-9, 1e-6, 1e-3, 0.1, 1.0, 3.0, 6.0, 6.28] {
+    for solid_angle in [1e-9, 1e-6, 1e-3, 0.1, 1.0, 3.0, 6.0, 2.0 * PI - 3e-3] {
         for normal in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::X, DVec3::new(0.0, -0.8, -0.6)] {
             // Off the axis, so that a horizon may cut the small ones: the normal is tilted until it does.
             let corners = sized(solid_angle, &mut stream);
@@ -295,19 +266,23 @@ fn a_triangle_cut_by_the_horizon_sends_what_is_above() {
     }
 }
 
+/// A triangle that moves with a number from 0 to 1.
+type Path = Box<dyn Fn(f64) -> [DVec3; 3]>;
+
 #[test]
 fn no_switch_between_methods_makes_a_step() {
     // Paths along which a triangle passes every switch: from afar to touching, through its plane, past an edge, over the
     // horizon, from long and thin to round. A step anywhere would be an error there.
     let base = [DVec3::new(-0.3, -0.2, 0.0), DVec3::new(0.7, -0.1, 0.1), DVec3::new(0.1, 0.9, -0.2)];
-    let by = |offset: DVec3| base.map(|corner| corner + offset);
+    let by = move |offset: DVec3| base.map(|corner| corner + offset);
     let normal = DVec3::new(0.48, 0.64, 0.6);
-    let paths: [(&str, Box<dyn Fn(f64) -> [DVec3; 3]>); 6] = [
+    let paths: [(&str, Path); 7] = [
         ("distance", Box::new(move |t| by(DVec3::Z * 10f64.powf(9.0 * t - 4.0)))),
         ("through the plane", Box::new(move |t| by(DVec3::new(2.0, 0.0, t * 1e-5)))),
         ("through the inside", Box::new(move |t| by(DVec3::new(-0.1, -0.1, (t - 0.5) * 1e-2)))),
         ("past an edge", Box::new(move |t| by(DVec3::new(0.02, 0.1 + 0.1 * t, -0.03)))),
         ("over the horizon", Box::new(move |t| by(DVec3::new(2.0, 3.0, -4.0 * t - 1.0)))),
+        ("over the horizon, far away", Box::new(move |t| by(DVec3::new(0.8, -0.6, 0.0) * 1e6 + normal * (t - 0.5)))),
         (
             "thickness",
             Box::new(move |t| {
@@ -325,7 +300,8 @@ fn no_switch_between_methods_makes_a_step() {
             let (found, exact) = (seen.solid_angle(), precise::solid_angle(plain));
             assert!((found - exact).abs() <= 1e-7 * exact.abs(), "{name} {step}: {found} for {exact} sr");
             let (found, exact) = (seen.irradiance(normal), precise::irradiance(plain, normal.to_array()));
-            assert!((found - exact).abs() <= 1e-9 * exact + 1e-15, "{name} {step}: {found} for {exact}");
+            let (relative, floor) = if name.ends_with("far away") { (1e-7, 1e-22) } else { (1e-9, 1e-15) };
+            assert!((found - exact).abs() <= relative * exact + floor, "{name} {step}: {found} for {exact}");
             // The point for one pair of numbers moves along with the triangle.
             let Some(sampler) = SolidAngle::new(&seen) else { continue };
             let at = sampler.sample([0.37, 0.61]);
@@ -411,12 +387,15 @@ fn exact(family: usize, seed: u64, u: [f64; 2]) -> Result<(), TestCaseError> {
 }
 
 fn run(cases: u32) {
-    let mut runner = TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
+    // The same triangles each time.
+    let runner = || {
+        let config = Config { cases, failure_persistence: None, ..Config::default() };
+        TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[4; 32]))
+    };
     let any = (0..FAMILIES.len(), any::<u64>(), 1e-3..0.999f64, 1e-3..0.999f64);
-    runner.run(&any, |(family, seed, u, v)| exact(family, seed, [u, v])).unwrap_or_else(|error| panic!("{error}"));
-    let mut runner = TestRunner::new(Config { cases, failure_persistence: None, ..Config::default() });
+    runner().run(&any, |(family, seed, u, v)| exact(family, seed, [u, v])).unwrap_or_else(|error| panic!("{error}"));
     let any = (adversarial(), direction(), unit(), unit());
-    runner
+    runner()
         .run(&any, |(corners, normal, u, v)| within_ranges(&Seen::new(corners.map(Vec3::as_dvec3)), normal, [u, v]))
         .unwrap_or_else(|error| panic!("{error}"));
 }

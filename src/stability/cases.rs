@@ -3,7 +3,7 @@
 use super::tally::{Finding, Tally, relative};
 use super::triangles::{self, Draw, Posed};
 use super::vectors::{AREALESS_LIMIT, IRRADIANCE_FLOOR, IRRADIANCE_LIMIT, SOLID_ANGLE_LIMIT};
-use super::{precise, textbook};
+use super::{choices, precise, textbook};
 use crate::base::random::Stream;
 use crate::base::triangle::SolidAngle;
 
@@ -103,6 +103,13 @@ pub const CASES: &[Case] = &[
         run: || sample(triangles::touching),
     },
     Case { name: "solid-angle-sample/grazing", what: "as above", run: || sample(triangles::grazing) },
+    Case {
+        name: "choice/running-sum",
+        what: "a million log-normal weights: in f32 small ones add nothing; relative error",
+        run: choices::cumulative,
+    },
+    Case { name: "choice/alias-table", what: "the same; error over the mean probability", run: choices::alias },
+    Case { name: "choice/uniform", what: "numbers that reach 1", run: choices::uniform },
 ];
 
 /// Triangles that each case tries.

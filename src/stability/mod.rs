@@ -7,6 +7,7 @@
 //! Adding a case takes a function that returns a [`Finding`] and a line in [`CASES`].
 
 mod cases;
+mod choices;
 pub mod precise;
 mod tally;
 pub mod textbook;

@@ -8,7 +8,6 @@ use super::textbook;
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use crate::base::triangle::Seen;
-use csv::{ReaderBuilder, StringRecord, Trim};
 use glam::Vec3;
 use std::f64::consts::PI;
 use std::fs;
@@ -75,69 +74,53 @@ pub fn read(file: &Path) -> Result<Vec<Vector>> {
 
 /// Reads rows from the text of a file, whose name is for messages alone.
 pub fn parse(text: &[u8], file: &Path) -> Result<Vec<Vector>> {
-    // Quotes are no part of such a file: one that is lost must not swallow the lines that follow.
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .quoting(false)
-        .comment(Some(b'#'))
-        .trim(Trim::All)
-        .from_reader(text);
+    // Fields hold no commas and no line ends, so lines are rows: a line's number is then what an editor shows.
     let mut vectors = Vec::new();
-    let mut record = StringRecord::new();
-    loop {
-        let line = reader.position().line();
-        let wrong = |line: u64, at: usize, message: &str| Error::Input {
-            file: file.to_owned(),
-            line: Some(line as usize),
-            field: COLUMNS.get(at).copied().unwrap_or_default().to_owned(),
-            message: format!("column {}: {message}", at + 1),
-        };
-        match reader.read_record(&mut record) {
-            Ok(false) => break,
-            Ok(true) => {}
-            Err(error) => {
-                let at = match error.kind() {
-                    csv::ErrorKind::Utf8 { err, .. } => err.field(),
-                    _ => 0,
-                };
-                let line = error.position().map_or(line, csv::Position::line);
-                return Err(wrong(line, at, &format!("this is no text: {error}; a CSV file in UTF-8 is right")));
-            }
-        }
-        let line = record.position().map_or(line, csv::Position::line);
-        if vectors.is_empty() && record.get(0) == Some(COLUMNS[0]) {
+    let wrong = |line: usize, at: usize, message: &str| Error::Input {
+        file: file.to_owned(),
+        line: Some(line),
+        field: COLUMNS.get(at).copied().unwrap_or_default().to_owned(),
+        message: format!("column {}: {message}", at + 1),
+    };
+    for (line, bytes) in (1..).zip(text.split(|byte| *byte == b'\n')) {
+        let row = std::str::from_utf8(bytes).map_err(|error| {
+            let at = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b',').count();
+            wrong(line, at, "this is no text; a CSV file in UTF-8 is right")
+        })?;
+        let row = row.trim_start_matches('\u{feff}').trim();
+        let is_header = vectors.is_empty() && row.split(',').next() == Some(COLUMNS[0]);
+        if row.is_empty() || row.starts_with('#') || is_header {
             continue;
         }
-        vectors.push(Vector::of(&record).map_err(|(at, message)| wrong(line, at, &message))?);
+        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+        vectors.push(Vector::of(&fields).map_err(|(at, message)| wrong(line, at, &message))?);
     }
     if vectors.is_empty() {
-        let message = format!("column 1: there are no rows; at least one is right, of {}", COLUMNS.join(","));
-        return Err(Error::Input { file: file.to_owned(), line: Some(1), field: String::new(), message });
+        return Err(wrong(1, 0, &format!("there are no rows; at least one is right, of {}", COLUMNS.join(","))));
     }
     Ok(vectors)
 }
 
 impl Vector {
     /// A row; where it cannot be used, the column (from 0) and what is wrong.
-    fn of(record: &StringRecord) -> std::result::Result<Self, (usize, String)> {
+    fn of(record: &[&str]) -> std::result::Result<Self, (usize, String)> {
         if record.len() != COLUMNS.len() {
             let at = record.len().min(COLUMNS.len());
             let what = if record.len() < COLUMNS.len() { "the row ends here" } else { "the row goes on here" };
             return Err((at, format!("{what}, with {} columns; 15 are right: {}", record.len(), COLUMNS.join(","))));
         }
-        let name = &record[0];
+        let name = record[0];
         let category = CATEGORIES.into_iter().find(|category| *category == name).ok_or_else(|| {
             let near = names::near(name, CATEGORIES);
             (0, format!("unknown category `{name}`; near it: {}", near.join(", ")))
         })?;
         let number = |at: usize| match record[at].parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err((at, format!("`{}` is not a finite number; one like -1.25e-3 is right", &record[at]))),
+            _ => Err((at, format!("`{}` is not a finite number; one like -1.25e-3 is right", record[at]))),
         };
         let short = |at: usize| {
             let short = number(at)? as f32;
-            let message = || (at, format!("`{}` is beyond f32; magnitudes up to 3.4e38 are right", &record[at]));
+            let message = || (at, format!("`{}` is beyond f32; magnitudes up to 3.4e38 are right", record[at]));
             if short.is_finite() { Ok(short) } else { Err(message()) }
         };
         let vector = |at: usize| Ok(Vec3::new(short(at)?, short(at + 1)?, short(at + 2)?));

@@ -29,7 +29,7 @@ impl Seen {
     /// distance. Where even this cancels (slivers, grazing planes, a corner or an edge at the receiver), it is taken again in twice the digits.
     ///
     /// Source: Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.
-    #[inline]
+    #[inline(always)]
     pub fn solid_angle(&self) -> f64 {
         let (triple, denominator) = self.tangent();
         (2.0 * arctan2(triple.abs(), denominator)).copysign(triple)
@@ -37,7 +37,7 @@ impl Seen {
 
     /// Numerator and denominator of the tangent of half the solid angle: `a·(b×c)` and the printed denominator, 0 where the
     /// numerator is 0.
-    #[inline]
+    #[inline(always)]
     fn tangent(&self) -> (f64, f64) {
         let [a, b, c] = self.corners;
         let [la, lb, lc] = self.lengths;
@@ -87,13 +87,14 @@ impl Seen {
 
 /// `a×b` for two corners and their distances, of digits enough also where both lie on nearly one line with the receiver.
 ///
-/// Written as the shorter one times the edge: far away two corners are nearly one vector, and their own product has no digits.
+/// Written as the shorter one times the edge: far away two corners are nearly one vector, and of their own product too few digits
+/// are left to say where the edge crosses the horizon.
 #[inline(always)]
 pub(super) fn edge_normal(a: DVec3, b: DVec3, la: f64, lb: f64) -> DVec3 {
     let edge = b - a;
     let (short, length) = if la <= lb { (a, la) } else { (b, lb) };
     let normal = short.cross(edge);
-    // Rounding leaves 1e-16 of this product: here under a hundred-thousandth of a millionth is right no more.
+    // Rounding leaves 1e-16 of this product, so that from here on fewer than eleven digits would be right.
     if normal.length_squared() <= 1e-10 * (length * length) * edge.length_squared() {
         return normal_of_more_digits(a, b);
     }
