@@ -47,14 +47,15 @@ impl Strategy for Allocate {
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
         let receivers = context.stage.receivers();
-        let step = receivers.len().div_ceil(RECEIVERS).max(1);
+        let most = PAIRS / context.stage.lights().len().max(1);
+        let step = receivers.len().div_ceil(most.clamp(16, 4096)).max(1);
         let some: Vec<Receiver> = receivers.iter().copied().step_by(step).collect();
         Ok(Sampler::new(context.stage, &some, Weights::Heuristic, self.rays))
     }
 }
 
-/// Receivers that the mean number of points is taken over, at most.
-const RECEIVERS: usize = 4096;
+/// Receivers times lights that the mean number of points is taken over, about.
+const PAIRS: usize = 4_000_000;
 
 /// What points are shared out in proportion to.
 pub enum Weights {

@@ -36,7 +36,7 @@ pub(super) const HEIGHT: f32 = 4.0;
 pub(super) fn one_light(side: f32, height: f32) -> Result<Scene> {
     let mut parts = ground(30.0, square(Vec3::new(-3.0, -1.5, height), Vec3::ZERO, [side; 2], CANDELA).to_vec());
     parts.surfaces.extend(cuboid(Vec3::new(-0.4, -0.4, 0.0), Vec3::new(0.4, 0.4, 1.6)));
-    seen(parts, format!("one-light-{side}-at-{height}"), Vec3::new(4.2, -6.4, 5.2), Vec3::new(0.9, 0.5, 0.4))
+    seen(parts, format!("one-light-{side}-at-{height}"), Vec3::new(3.4, -4.6, 3.6), Vec3::new(0.9, 0.3, 0.3))
 }
 
 /// Posts and walls, dark and bright, under six lights from a lamp to a sign, near and far, open and hidden.

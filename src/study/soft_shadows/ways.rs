@@ -198,5 +198,5 @@ fn variance(by: LightSampling, light: &Light, at: &Receiver, numbers: &[[f32; 2]
         squares += x * x;
     }
     let n = numbers.len() as f64;
-    if sum > 0.0 { n * squares / (sum * sum) - 1.0 } else { 0.0 }
+    if sum > 0.0 { (n * squares / (sum * sum) - 1.0).max(0.0) } else { 0.0 }
 }
