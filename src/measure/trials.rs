@@ -45,7 +45,7 @@ struct Done {
 
 impl Trials<'_> {
     /// A summary of each strategy at the largest budget that it can afford; one that can afford no pass is skipped.
-    pub fn run(&self, strategies: &[Configured], watch: &dyn Observer) -> Result<Vec<Summary>> {
+    pub fn run(&self, strategies: &[&Configured], watch: &dyn Observer) -> Result<Vec<Summary>> {
         let rough = self.truth.thinned(plan::RECEIVERS);
         watch.begin("pilots", strategies.len() as u64);
         let mut pilots = Vec::new();
@@ -55,7 +55,7 @@ impl Trials<'_> {
             watch.advance(1);
         }
         watch.end();
-        let passes = |(strategy, pilot): (&Configured, &Result<Pilot>)| {
+        let passes = |(strategy, pilot): (&&Configured, &Result<Pilot>)| {
             // Nobody looks at the oracle's time: it may take longer, but not for ever.
             let patience = if strategy.info().role == Role::Oracle { 4.0 } else { 1.0 };
             pilot.as_ref().ok()?.at_once(Budget { seconds: patience * self.budget.seconds, ..self.budget })
@@ -67,7 +67,7 @@ impl Trials<'_> {
         shuffle(&mut units, self.seed);
         let mut done = self.units(strategies, &units, watch)?;
         done.sort_by_key(|done| (done.strategy, done.row.run));
-        let summary = |(i, strategy): (usize, &Configured)| match &pilots[i] {
+        let summary = |(i, strategy): (usize, &&Configured)| match &pilots[i] {
             Err(error) => Summary { error: Some(error.to_string()), ..blank(strategy) },
             Ok(pilot) if budgets[i].is_none() => {
                 let skipped = format!("skipped: about {:.2} s a pass", pilot.first_pass_s());
@@ -102,14 +102,19 @@ impl Trials<'_> {
     }
 
     /// All runs, on as many threads as are allowed.
-    fn units(&self, strategies: &[Configured], units: &[(usize, u32, u32)], watch: &dyn Observer) -> Result<Vec<Done>> {
+    fn units(
+        &self,
+        strategies: &[&Configured],
+        units: &[(usize, u32, u32)],
+        watch: &dyn Observer,
+    ) -> Result<Vec<Done>> {
         watch.begin("runs", units.len() as u64);
         let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let work = || -> Result<()> {
             while let Some(&(strategy, run, passes)) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
                 watch.check()?;
                 let key = RunKey { seed: self.seed, run };
-                let once = Once { target: self.target, truth: self.truth, strategy: &strategies[strategy], key };
+                let once = Once { target: self.target, truth: self.truth, strategy: strategies[strategy], key };
                 let mut rows = Vec::new();
                 let image = once.through(&[passes], |row| {
                     rows.push(row);

@@ -50,7 +50,7 @@ impl Strategy for Allocate {
         let most = PAIRS / context.stage.lights().len().max(1);
         let step = receivers.len().div_ceil(most.clamp(16, 4096)).max(1);
         let some: Vec<Receiver> = receivers.iter().copied().step_by(step).collect();
-        Ok(Sampler::new(context.stage, &some, Weights::Heuristic, self.rays))
+        Ok(Sampler::new(context.stage, &some, Weights::Heuristic, self.rays.into()))
     }
 }
 
@@ -77,7 +77,7 @@ pub struct Sampler {
 
 impl Sampler {
     /// A sampler that gives `rays` points to a receiver, on average over `receivers`.
-    pub fn new(stage: &Stage, receivers: &[Receiver], weights: Weights, rays: f32) -> Self {
+    pub fn new(stage: &Stage, receivers: &[Receiver], weights: Weights, rays: f64) -> Self {
         let scene = Arc::clone(stage.scene());
         let extended = |&light: &LightId| scene.lights()[light as usize].kind() == Kind::Triangle;
         let (triangles, others): (Vec<_>, Vec<_>) = stage.lights().iter().copied().partition(extended);
@@ -85,7 +85,7 @@ impl Sampler {
         // Collected before it is summed: the sum must not depend on threads.
         let totals: Vec<f64> = receivers.par_iter().map(|at| sampler.weights(at).sum()).collect();
         let total: f64 = totals.iter().sum();
-        sampler.points = if total > 0.0 { f64::from(rays) * receivers.len() as f64 / total } else { 0.0 };
+        sampler.points = if total > 0.0 { rays * receivers.len() as f64 / total } else { 0.0 };
         sampler
     }
 

@@ -283,7 +283,8 @@ fn try_all(
         seed: options.seed,
         threads: options.threads,
     };
-    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+    for (strategy, summary) in strategies.iter().zip(trials.run(&strategies.iter().collect::<Vec<_>>(), session.watch)?)
+    {
         let timing = Timing::of(&trials, strategy, &summary, FRAME)?;
         let mut cells = vec![(stage.scene().lights().len() as u64).into()];
         cells.extend(bias_cells(&summary, timing, receivers.len()));

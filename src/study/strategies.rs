@@ -241,7 +241,8 @@ fn by_measuring(
     };
     let frame = stage.receivers().len();
     let mut found = Vec::new();
-    for (strategy, summary) in strategies.iter().zip(trials.run(strategies, session.watch)?) {
+    for (strategy, summary) in strategies.iter().zip(trials.run(&strategies.iter().collect::<Vec<_>>(), session.watch)?)
+    {
         let timing = Timing::of(&trials, strategy, &summary, frame)?;
         found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
     }

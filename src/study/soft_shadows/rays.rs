@@ -83,7 +83,7 @@ pub(super) fn laws() -> TableRecord {
 }
 
 /// Its own error lies far enough below that of 1,000 rays.
-const OWN: f64 = 1e-6;
+const OWN: f64 = 1e-8;
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
     let mut pictures = Vec::new();

@@ -51,8 +51,8 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
              angle x radiance x albedo, as the lecture has it, made unbiased by Russian roulette (`allocate`)."
                 .into(),
             format!(
-                "optimal: from the mean m, second moment q and variance v of each light at each receiver ({PILOT} points): n = sqrt(v / c) where \
-                 that is 1 or more, sqrt(q / c) where that is less than 1, else 1, with c such that the budget is met."
+                "optimal: from the second moment q and variance v of each light at each receiver ({PILOT} points) and one price c for all: \
+                 sqrt(q / c) points where that is less than 1, else the whole n from which on one more saves less, v / (n (n + 1)) < c."
             ),
         ],
         plots: vec![plot("shares", "error against rays", "by", ("rays", "rays a receiver"), ("mse", "MSE, (cd/m^2)^2"))],
@@ -73,9 +73,11 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         .into_iter()
         .map(|count| {
             let budget = f64::from(count) * each;
-            let rows = receivers.iter().map(|at| at.pixel).zip(best(&moments, budget)).collect();
-            [Weights::Heuristic, Weights::Table(rows)]
-                .map(|weights| Sampler::new(&stage, receivers, weights, budget as f32))
+            let rows = best(&moments, budget);
+            let total: f64 = rows.iter().flatten().map(|&n| f64::from(n)).sum();
+            let table = receivers.iter().map(|at| at.pixel).zip(rows).collect();
+            [(Weights::Heuristic, budget), (Weights::Table(table), total / receivers.len() as f64)]
+                .map(|(weights, rays)| Sampler::new(&stage, receivers, weights, rays))
         })
         .collect();
     let contenders: Vec<Contender<'_>> = COUNTS
@@ -130,27 +132,27 @@ fn pilot(stage: &Stage, at: &Receiver, seed: u64) -> Vec<Moment> {
     triangles(stage).map(moment).collect()
 }
 
-/// Points of each light at each receiver that leave the least squared error in all, `budget` of them a receiver on average.
+/// Points of each light at each receiver that leave the least squared error in all, about `budget` of them a receiver.
 ///
-/// A light of n >= 1 points leaves v / n; one that is met with chance n < 1 leaves q / n - m^2.
+/// A light of whole n >= 1 points leaves v / n, so that one more saves v / (n (n + 1)); one that is met with chance n < 1 leaves
+/// q / n - m^2. Numbers between are not tried: rounding them at random adds up to m^2 / 8.
 fn best(moments: &[Vec<Moment>], budget: f64) -> Vec<Vec<f32>> {
-    let points = |of: &Moment, scale: f64| {
-        let (certain, chance) = (of.variance.sqrt() * scale, of.square.sqrt() * scale);
-        if certain >= 1.0 { certain } else { chance.min(1.0) }
+    // Where a point more saves less than `price`.
+    let points = |of: &Moment, price: f64| {
+        let chance = (of.square / price).sqrt();
+        if chance < 1.0 { chance } else { (0.5 + (0.25 + of.variance / price).sqrt()).floor().max(1.0) }
     };
-    let total = |scale: f64| moments.iter().flatten().map(|of| points(of, scale)).sum::<f64>();
+    let total = |price: f64| moments.iter().flatten().map(|of| points(of, price)).sum::<f64>();
     let wanted = budget * moments.len() as f64;
-    let (mut low, mut high) = (0.0, 1.0);
-    while total(high) < wanted && high < 1e30 {
-        high *= 2.0;
-    }
+    // Prices by their logarithms: from one that all can pay to one that none can.
+    let (mut low, mut high) = (-200.0f64, 200.0f64);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        if total(middle) < wanted { low = middle } else { high = middle }
+        if total(middle.exp2()) > wanted { low = middle } else { high = middle }
     }
     // A light that no point of the pilot met is met now and then.
     let least = 1e-3;
-    moments.iter().map(|row| row.iter().map(|of| points(of, high).max(least) as f32).collect()).collect()
+    moments.iter().map(|row| row.iter().map(|of| points(of, high.exp2()).max(least) as f32).collect()).collect()
 }
 
 #[cfg(test)]
@@ -169,15 +171,23 @@ mod tests {
             })
             .sum()
         };
-        let rows = best(&moments, 3.0);
-        let total: f32 = rows.iter().flatten().sum();
-        assert!((total - 6.0).abs() < 1e-2, "{rows:?}");
-        let least = error(&rows);
-        for (i, j) in [(0, 1), (0, 2), (1, 2), (2, 0), (2, 1), (1, 0), (3, 0)] {
-            let mut moved = rows.clone();
-            moved[i / 2][i % 2] *= 0.98;
-            moved[j / 2][j % 2] += rows[i / 2][i % 2] * 0.02;
-            assert!(error(&moved) >= least - 1e-9, "from {i} to {j}: {} below {least}", error(&moved));
+        for budget in [0.5, 1.0, 3.0, 8.0] {
+            let rows = best(&moments, budget);
+            let total: f32 = rows.iter().flatten().sum();
+            assert!((f64::from(total) - 2.0 * budget).abs() <= 1.0, "{budget}: {rows:?}");
+            let least = error(&rows);
+            let flat: Vec<f32> = rows.iter().flatten().copied().collect();
+            for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))).filter(|(i, j)| i != j) {
+                // A point moves where both numbers are whole, a part of one where both are chances.
+                let part = if flat[i] > 1.0 && flat[j] >= 1.0 { 1.0 } else { 0.01 * flat[i] };
+                if part < 1.0 && (flat[i] > 1.0 || flat[j] + part > 1.0) {
+                    continue;
+                }
+                let mut moved = rows.clone();
+                moved[i / 2][i % 2] -= part;
+                moved[j / 2][j % 2] += part;
+                assert!(error(&moved) >= least * (1.0 - 1e-3), "{budget}: {part} from {i} to {j} of {rows:?}");
+            }
         }
     }
 }
