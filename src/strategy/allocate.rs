@@ -1,11 +1,11 @@
 //! How many points does each area light get, where a budget of them is shared out among receivers and lights?
 //!
-//! Every light is taken. Those without extent get one ray a pass; to each triangle a receiver gives `n` points on average, each
-//! of weight `1 / n`, in proportion to the light's solid angle times its radiance times the receiver's albedo. One factor for
+//! Every light is taken. Those without extent get one ray a pass; to each triangle a receiver gives `n` points on average, in
+//! proportion to the light's solid angle times its radiance times the receiver's albedo. One factor for
 //! all receivers brings the mean over the image to `rays` points a receiver and pass, so that bright receivers get more.
 //!
-//! `n` is no whole number. It is rounded up or down at random, by one number for all lights (systematic sampling): so a light
-//! too weak for a point of its own is met now and then, with its weight, and nothing is lost.
+//! Each point weighs `1 / n`. From 1 on, `n` is rounded to a whole number, which adds no noise; below 1 it is the chance of a
+//! point, drawn by one number for all lights (systematic sampling), so that nothing is lost.
 //!
 //! Source: the heuristic: the lecture on area lights that this project follows; the roulette: Arvo and Kirk, SIGGRAPH 1990.
 
@@ -50,19 +50,30 @@ impl Strategy for Allocate {
         let most = PAIRS / context.stage.lights().len().max(1);
         let step = receivers.len().div_ceil(most.clamp(16, 4096)).max(1);
         let some: Vec<Receiver> = receivers.iter().copied().step_by(step).collect();
-        Ok(Sampler::new(context.stage, &some, Weights::Heuristic, self.rays.into()))
+        Ok(Sampler::new(context.stage, &some, self.rays.into()))
     }
 }
 
+/// Least weight of a light, as a share of the irradiance that it is taken to send.
+const LEAST: f64 = 1e-6;
+
+/// Most points on one triangle in one pass.
+const MOST: f64 = 16_384.0;
+
 /// Receivers times lights that the mean number of points is taken over, about.
-const PAIRS: usize = 4_000_000;
+const PAIRS: usize = 1_000_000;
 
 /// What points are shared out in proportion to.
-pub enum Weights {
+enum Weights {
     /// Solid angle times radiance times albedo.
     Heuristic,
-    /// Weights that are known already: by pixel, one for each triangle in the stage's order.
+    /// By pixel, one for each triangle in the stage's order.
     Table(HashMap<u32, Vec<f32>>),
+}
+
+/// Points of which there is one or more are whole.
+fn whole(points: f64) -> f64 {
+    if points < 1.0 { points } else { points.min(MOST).round() }
 }
 
 /// [`Allocate`] for a scene.
@@ -76,17 +87,32 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// A sampler that gives `rays` points to a receiver, on average over `receivers`.
-    pub fn new(stage: &Stage, receivers: &[Receiver], weights: Weights, rays: f64) -> Self {
+    /// A sampler that gives `rays` points to a receiver by the heuristic, on average over `receivers`.
+    pub fn new(stage: &Stage, receivers: &[Receiver], rays: f64) -> Self {
+        let mut sampler = Self::with(stage, Weights::Heuristic);
+        let weights: Vec<Vec<f64>> = receivers.par_iter().map(|at| sampler.weights(at).collect()).collect();
+        let total = |scale: f64| weights.iter().flatten().map(|weight| whole(weight * scale)).sum::<f64>();
+        let wanted = rays * receivers.len() as f64;
+        // The total grows with the scale, in steps: by its logarithm, from one at which nothing is given on.
+        let (mut low, mut high) = (-200.0f64, 200.0f64);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if total(middle.exp2()) < wanted { low = middle } else { high = middle }
+        }
+        sampler.points = high.exp2();
+        sampler
+    }
+
+    /// A sampler that gives numbers of points that are known already: by pixel, one for each triangle in the stage's order.
+    pub fn by_table(stage: &Stage, points: HashMap<u32, Vec<f32>>) -> Self {
+        Self::with(stage, Weights::Table(points))
+    }
+
+    fn with(stage: &Stage, weights: Weights) -> Self {
         let scene = Arc::clone(stage.scene());
         let extended = |&light: &LightId| scene.lights()[light as usize].kind() == Kind::Triangle;
         let (triangles, others): (Vec<_>, Vec<_>) = stage.lights().iter().copied().partition(extended);
-        let mut sampler = Self { scene, triangles, others, weights, points: 0.0 };
-        // Collected before it is summed: the sum must not depend on threads.
-        let totals: Vec<f64> = receivers.par_iter().map(|at| sampler.weights(at).sum()).collect();
-        let total: f64 = totals.iter().sum();
-        sampler.points = if total > 0.0 { rays * receivers.len() as f64 / total } else { 0.0 };
-        sampler
+        Self { scene, triangles, others, weights, points: 1.0 }
     }
 
     /// The weight of each triangle at a receiver.
@@ -100,12 +126,19 @@ impl Sampler {
             let light = &self.scene.lights()[id as usize];
             match &self.weights {
                 Weights::Table(_) => row.map_or(0.0, |row| f64::from(row[i])),
-                Weights::Heuristic if importance(light, at) <= 0.0 => 0.0,
                 Weights::Heuristic => {
-                    (solid_angle(light, at) * f64::from(luminance(light.colour)) * albedo).max(f64::MIN_POSITIVE)
+                    // None of 0 that could add anything: in its plane but for rounding.
+                    let least = LEAST * f64::from(importance(light, at));
+                    let arriving = solid_angle(light, at) * f64::from(luminance(light.colour));
+                    if least > 0.0 { arriving.max(least) * albedo } else { 0.0 }
                 }
             }
         })
+    }
+
+    /// How many points each triangle gets at a receiver, on average.
+    fn points(&self, at: &Receiver) -> impl Iterator<Item = f64> {
+        self.weights(at).map(|weight| whole(weight * self.points))
     }
 }
 
@@ -123,8 +156,8 @@ impl LightSampler for Sampler {
         tally.weighed(self.triangles.len() as u64);
         ends.clear();
         let mut end = 0.0;
-        ends.extend(self.weights(at).map(|weight| {
-            end += weight * self.points;
+        ends.extend(self.points(at).map(|points| {
+            end += points;
             end
         }));
     }
@@ -140,21 +173,21 @@ impl LightSampler for Sampler {
             next += ends[next..].partition_point(|&end| end <= target);
             let start = if next == 0 { 0.0 } else { ends[next - 1] };
             let (light, points) = (self.triangles[next], ends[next] - start);
+            let count = (ends[next] - target).ceil().max(1.0);
+            let weight = (1.0 / points).min(f64::from(f32::MAX)) as f32;
             // All points of one light in all passes are one sequence.
-            let (weight, of) = ((1.0 / points).min(f64::from(f32::MAX)) as f32, points.ceil().max(1.0) as u32);
-            let mut j = 0;
-            while target < ends[next] {
+            let of = points.ceil().max(1.0) as u32;
+            for j in 0..count as u32 {
                 out.push_at(light, weight, draws.nested(j, of, |draws| draws.point_of(light)));
-                target += 1.0;
-                j += 1;
             }
+            target += count;
         }
     }
 
     fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
         self.others.iter().for_each(|&light| counts[light as usize] += 1.0);
-        for (&light, weight) in self.triangles.iter().zip(self.weights(at)) {
-            counts[light as usize] += (weight * self.points) as f32;
+        for (&light, points) in self.triangles.iter().zip(self.points(at)) {
+            counts[light as usize] += points as f32;
         }
         true
     }

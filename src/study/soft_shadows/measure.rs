@@ -46,17 +46,19 @@ pub(super) fn measure(
     watch.begin(what, u64::from(session.options.repeats));
     let once = |run: u32| -> Result<Vec<(f64, f64, f64)>> {
         let key = RunKey { seed: session.options.seed, run };
-        let each = contenders.iter().map(|contender| {
+        // Each run begins with another contender: none always runs first, into cold caches.
+        let mut found = vec![(0.0, 0.0, 0.0); contenders.len()];
+        for i in (0..contenders.len()).map(|i| (i + run as usize) % contenders.len()) {
+            let contender = &contenders[i];
             watch.check()?;
             let plan = Plan { stage: contender.stage, receivers, sampler: contender.sampler, key };
             let mut film = Film::new(receivers.len());
             let ((), spent) = timed(|| plan.run(contender.passes, &mut film));
             let errors = truth.errors(&film.image());
-            Ok((errors.mse, errors.rel_mse, spent.cpu))
-        });
-        let done = each.collect();
+            found[i] = (errors.mse, errors.rel_mse, spent.cpu);
+        }
         watch.advance(1);
-        done
+        Ok(found)
     };
     let runs: Vec<Vec<(f64, f64, f64)>> =
         (0..session.options.repeats).into_par_iter().map(once).collect::<Result<_>>()?;

@@ -13,7 +13,7 @@ use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
 use crate::strategy::BuildContext;
-use crate::strategy::allocate::{Sampler, Weights};
+use crate::strategy::allocate::Sampler;
 use crate::strategy::registry::parse;
 use crate::study::Session;
 use crate::study::table::{both, column, interval, plot};
@@ -73,11 +73,8 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         .into_iter()
         .map(|count| {
             let budget = f64::from(count) * each;
-            let rows = best(&moments, budget);
-            let total: f64 = rows.iter().flatten().map(|&n| f64::from(n)).sum();
-            let table = receivers.iter().map(|at| at.pixel).zip(rows).collect();
-            [(Weights::Heuristic, budget), (Weights::Table(table), total / receivers.len() as f64)]
-                .map(|(weights, rays)| Sampler::new(&stage, receivers, weights, rays))
+            let table = receivers.iter().map(|at| at.pixel).zip(best(&moments, budget)).collect();
+            [Sampler::new(&stage, receivers, budget), Sampler::by_table(&stage, table)]
         })
         .collect();
     let contenders: Vec<Contender<'_>> = COUNTS
@@ -134,8 +131,7 @@ fn pilot(stage: &Stage, at: &Receiver, seed: u64) -> Vec<Moment> {
 
 /// Points of each light at each receiver that leave the least squared error in all, about `budget` of them a receiver.
 ///
-/// A light of whole n >= 1 points leaves v / n, so that one more saves v / (n (n + 1)); one that is met with chance n < 1 leaves
-/// q / n - m^2. Numbers between are not tried: rounding them at random adds up to m^2 / 8.
+/// A light of whole n >= 1 points leaves v / n, so that one more saves v / (n (n + 1)); one that is met with chance n < 1 leaves q / n - m^2.
 fn best(moments: &[Vec<Moment>], budget: f64) -> Vec<Vec<f32>> {
     // Where a point more saves less than `price`.
     let points = |of: &Moment, price: f64| {
