@@ -127,8 +127,13 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "light-tree/far-apart",
-        what: "as above, a quarter of them 3e38 m away: sizes are infinite",
+        what: "as above, a quarter of them 1e18 m away: fourth powers are infinite",
         run: trees::far_apart,
+    },
+    Case {
+        name: "light-tree/infinite",
+        what: "as above, a quarter of them 3e38 m away: sizes are infinite, and NaN cast to a number is 0",
+        run: trees::infinite,
     },
     Case { name: "light-tree/walk", what: "a pick's probability against the one told; relative", run: trees::walk },
     Case { name: "light-tree/dark", what: "all behind the horizon: probabilities' sum", run: trees::dark },
@@ -147,7 +152,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "contribution/triangle",
-        what: "by projected solid angle from 0.1 to 1e4 of its size; over the exact value or 1e-7 pi",
+        what: "by projected solid angle from 1e-3 to 1e4 of its size; over the exact value or 1e-7 pi",
         run: reach::triangle,
     },
     Case { name: "contribution/scaled", what: "2^k times the light, k from -20 to 39", run: reach::scaled },

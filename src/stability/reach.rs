@@ -83,7 +83,7 @@ pub(super) fn triangle() -> Finding {
     let mut ours = Tally::default();
     for _ in 0..TRIED {
         let size = magnitude(&mut stream, -3.0, 2.0);
-        let centre = direction(&mut stream) * (size * magnitude(&mut stream, -1.0, 4.0));
+        let centre = direction(&mut stream) * (size * magnitude(&mut stream, -3.0, 4.0));
         let corners = [(); 3].map(|()| (centre + point(&mut stream) * size).as_vec3());
         let radiance = magnitude(&mut stream, -6.0, 12.0) as f32;
         let light = Light::from(Shape::Triangle { corners, radiance: Vec3::splat(radiance) });

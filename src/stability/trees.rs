@@ -26,9 +26,12 @@ const RECEIVERS: usize = 120;
 const WAYS: [How; 4] = [
     How { weighing: Weighing::Box, distance: Distance::Mean, far: 0.0 },
     How { weighing: Weighing::Box, distance: Distance::MinMax, far: 0.0 },
-    How { weighing: Weighing::Classic, distance: Distance::Mean, far: 0.0 },
     How { weighing: Weighing::Box, distance: Distance::Mean, far: 0.05 },
+    // Takes the absolute cosine at the receiver: it knows no horizon.
+    How { weighing: Weighing::Classic, distance: Distance::Mean, far: 0.0 },
 ];
+/// Those that know the horizon.
+const HORIZONS: usize = 3;
 /// Rounding of a count to f32, and of a sum of them.
 const ROUNDING: f64 = 1e-6;
 
@@ -80,9 +83,9 @@ fn all(scene: &Scene) -> Vec<LightId> {
 }
 
 /// The expected counts of each way of walking trees of 2 and of 8 slots a node, shown with the way.
-fn each_way(scene: &Scene, mut see: impl FnMut(&dyn Fn(&Receiver) -> Vec<f32>)) {
+fn each_way(scene: &Scene, ways: &[How], mut see: impl FnMut(&dyn Fn(&Receiver) -> Vec<f32>)) {
     let lights = all(scene);
-    for how in WAYS {
+    for &how in ways {
         let (binary, wide) = (Tree::<2>::new(scene, &lights, how), Tree::<8>::new(scene, &lights, how));
         let counts = |expect: &dyn Fn(&mut [f32])| {
             let mut counts = vec![0.0; lights.len()];
@@ -105,7 +108,7 @@ pub(super) fn sum() -> Finding {
                 receiver(DVec3::new(place.x, place.y, 0.0), DVec3::Z)
             })
             .collect();
-        each_way(&scene, |counts| {
+        each_way(&scene, &WAYS, |counts| {
             for at in &receivers {
                 let sum: f64 = counts(at).into_iter().map(f64::from).sum();
                 ours.add_positive(sum, (sum - 1.0).abs());
@@ -120,30 +123,39 @@ pub(super) fn reach() -> Finding {
     let mut stream = Stream::keyed(&[SEED, 1]);
     let (mut ours, mut theirs) = (Tally::default(), Tally::default());
     if let Some(scene) = scene(LIGHTS, &mut stream, mixed) {
-        reached(&scene, &mut stream, &mut ours);
+        reached(&scene, f32::MIN_POSITIVE, &mut stream, &mut ours);
         let strengths: Vec<f32> = scene.lights().iter().map(|light| light.peak_intensity().x).collect();
         halves(&strengths, 1.0, &mut theirs);
     }
     Finding { ours, textbook: Some(theirs), limit: 0.0 }
 }
 
-/// The same among lights so far apart that sizes are infinite in f32.
+/// The same, some lights so far away that in f32 their distance is finite and its fourth power is not.
 pub(super) fn far_apart() -> Finding {
+    apart(1e18, f32::MIN_POSITIVE)
+}
+
+/// Some lights at the ends of f32: sizes are infinite. A chance of none is then all that counts as lost.
+pub(super) fn infinite() -> Finding {
+    apart(3e38, 0.0)
+}
+
+fn apart(distance: f64, least: f32) -> Finding {
     let mut stream = Stream::keyed(&[SEED, 2]);
     let mut ours = Tally::default();
     let light = |stream: &mut Stream| {
         let far = stream.below(4) == 0;
-        let place = direction(stream) * if far { 3e38 } else { magnitude(stream, -3.0, 4.0) };
+        let place = direction(stream) * if far { distance } else { magnitude(stream, -3.0, 4.0) };
         Shape::Point { position: place.as_vec3(), intensity: Vec3::splat(intensity(stream)) }
     };
     if let Some(scene) = scene(LIGHTS, &mut stream, light) {
-        reached(&scene, &mut stream, &mut ours);
+        reached(&scene, least, &mut stream, &mut ours);
     }
     Finding { ours, textbook: None, limit: 0.0 }
 }
 
-/// Receivers among the lights, every other one exactly at a light.
-fn reached(scene: &Scene, stream: &mut Stream, tally: &mut Tally) {
+/// Receivers among the lights, every other one exactly at a light. A light with a chance of `least` or less is lost.
+fn reached(scene: &Scene, least: f32, stream: &mut Stream, tally: &mut Tally) {
     let receivers: Vec<Receiver> = (0..RECEIVERS / 4)
         .map(|i| {
             let place = if i % 2 == 0 {
@@ -155,12 +167,12 @@ fn reached(scene: &Scene, stream: &mut Stream, tally: &mut Tally) {
         })
         .collect();
     let uv = stream.uniform2();
-    each_way(scene, |counts| {
+    each_way(scene, &WAYS, |counts| {
         for at in &receivers {
             for (light, pmf) in scene.lights().iter().zip(counts(at)) {
                 // The count of one that is too small is given as the smallest normal number.
                 if contribution::<0b1111>(LightSampling::Area, light, uv, at).is_ok() {
-                    tally.add_positive(f64::from(pmf), if pmf > f32::MIN_POSITIVE { 0.0 } else { 1.0 });
+                    tally.add_positive(f64::from(pmf), if pmf > least { 0.0 } else { 1.0 });
                 }
             }
         }
@@ -216,7 +228,7 @@ pub(super) fn dark() -> Finding {
     let mut stream = Stream::keyed(&[SEED, 4]);
     let mut ours = Tally::default();
     if let Some(scene) = scene(LIGHTS, &mut stream, above) {
-        each_way(&scene, |counts| {
+        each_way(&scene, &WAYS[..HORIZONS], |counts| {
             for i in 0..20 {
                 let at = receiver(DVec3::new(f64::from(i), 0.0, 0.0), DVec3::NEG_Z);
                 let sum: f64 = counts(&at).into_iter().map(f64::from).sum();
@@ -224,7 +236,6 @@ pub(super) fn dark() -> Finding {
             }
         });
     }
-    // The classic weight takes the absolute cosine at the receiver: it knows no horizon.
     Finding { ours, textbook: None, limit: 0.0 }
 }
 
