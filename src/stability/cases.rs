@@ -3,7 +3,7 @@
 use super::tally::{Finding, Tally, relative};
 use super::triangles::{self, Draw, Posed};
 use super::vectors::{AREALESS_LIMIT, IRRADIANCE_FLOOR, IRRADIANCE_LIMIT, SOLID_ANGLE_LIMIT};
-use super::{choices, precise, textbook};
+use super::{bounds, choices, precise, reach, textbook, trees};
 use crate::base::random::Stream;
 use crate::base::triangle::SolidAngle;
 
@@ -110,6 +110,67 @@ pub const CASES: &[Case] = &[
     },
     Case { name: "choice/alias-table", what: "the same; error over the mean probability", run: choices::alias },
     Case { name: "choice/uniform", what: "numbers that reach 1", run: choices::uniform },
+    Case {
+        name: "choice/stretched",
+        what: "what is left of a number, at the edges of shares: 1 if it leaves [0, 1)",
+        run: bounds::stretched,
+    },
+    Case {
+        name: "light-tree/sum",
+        what: "2000 lights over 18 orders of magnitude: probabilities' sum less 1",
+        run: trees::sum,
+    },
+    Case {
+        name: "light-tree/reach",
+        what: "the same of three kinds, receivers at lights too: 1 for one that adds something and has no chance",
+        run: trees::reach,
+    },
+    Case {
+        name: "light-tree/far-apart",
+        what: "as above, a quarter of them 1e18 m away: fourth powers are infinite",
+        run: trees::far_apart,
+    },
+    Case {
+        name: "light-tree/infinite",
+        what: "as above, a quarter of them 3e38 m away: sizes are infinite, and NaN cast to a number is 0",
+        run: trees::infinite,
+    },
+    Case { name: "light-tree/walk", what: "a pick's probability against the one told; relative", run: trees::walk },
+    Case { name: "light-tree/dark", what: "all behind the horizon: probabilities' sum", run: trees::dark },
+    Case {
+        name: "light-tree/identical",
+        what: "1, 2, 3 and 100,000 in one place: relative error of 1/n",
+        run: trees::identical,
+    },
+    Case { name: "light-tree/boxes", what: "how far lights stick out, over the box", run: bounds::boxes },
+    Case { name: "light-tree/directions", what: "the same in 16 bits", run: bounds::directions },
+    Case { name: "light-tree/variance", what: "of 1/d^2, for splits: E[g^2] - E[g]^2 cancels", run: bounds::variance },
+    Case {
+        name: "contribution/point",
+        what: "0, 1 um to 1000 km away, 1e-6 to 1e12 cd; over what a receiver that faces it gets",
+        run: reach::point_light,
+    },
+    Case {
+        name: "contribution/triangle",
+        what: "by projected solid angle from 1e-3 to 1e4 of its size; over the exact value or 1e-7 pi",
+        run: reach::triangle,
+    },
+    Case { name: "contribution/scaled", what: "2^k times the light, k from -20 to 39", run: reach::scaled },
+    Case { name: "importance/point", what: "as for its contribution", run: reach::point_importance },
+    Case { name: "spot/cone", what: "cones 1e-7 to 1 wide, about their edges; error in cosine", run: reach::cone },
+    Case { name: "influence/radius", what: "squared, of 1e-6 to 1e12 cd; relative", run: reach::radius },
+    Case { name: "influence/in-range", what: "next to the edge, over the radius", run: reach::in_range },
+    Case { name: "influence/chance", what: "that a random range reaches; relative", run: reach::range_chance },
+    Case {
+        name: "influence/drawn-range",
+        what: "r / sqrt(1 - u) for u at 0 and next to 1; squared, relative",
+        run: reach::drawn_range,
+    },
+    Case {
+        name: "offset/push",
+        what: "0 to 1000 km from the origin: start above its surface, and how far beyond 4 units; in m",
+        run: bounds::push,
+    },
 ];
 
 /// Triangles that each case tries.

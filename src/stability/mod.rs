@@ -6,11 +6,14 @@
 //!
 //! Adding a case takes a function that returns a [`Finding`] and a line in [`CASES`].
 
+mod bounds;
 mod cases;
 mod choices;
 pub mod precise;
+mod reach;
 mod tally;
 pub mod textbook;
+mod trees;
 pub mod triangles;
 pub mod vectors;
 

@@ -44,7 +44,7 @@ pub const FAMILIES: [(&str, Draw); 11] = [
 ];
 
 /// A number by its order of magnitude: 10 to a uniform power.
-fn magnitude(stream: &mut Stream, low: f64, high: f64) -> f64 {
+pub(super) fn magnitude(stream: &mut Stream, low: f64, high: f64) -> f64 {
     10f64.powf(low + (high - low) * stream.uniform64())
 }
 
@@ -53,11 +53,11 @@ fn signed(stream: &mut Stream) -> f64 {
 }
 
 /// A point within the cube of two metres.
-fn point(stream: &mut Stream) -> DVec3 {
+pub(super) fn point(stream: &mut Stream) -> DVec3 {
     DVec3::new(signed(stream), signed(stream), signed(stream))
 }
 
-fn direction(stream: &mut Stream) -> DVec3 {
+pub(super) fn direction(stream: &mut Stream) -> DVec3 {
     loop {
         let p = point(stream);
         if (0.01..1.0).contains(&p.length_squared()) {

@@ -67,6 +67,20 @@ fn polynomial<const N: usize>(c: &[f64; N], z: f64) -> f64 {
 /// The angle of `(x, y)` from the x axis, for `y` of 0 or more: within `[0, pi]`, accurate relative to itself; 0 for `(0, 0)`.
 #[inline(always)]
 pub(super) fn arctan2(y: f64, x: f64) -> f64 {
+    // Most triangles are small. Strictly less, so that nothing over nothing is left to the other way.
+    if y < TAN_PI_16 * x { small(y / x) } else { wide(y, x) }
+}
+
+/// The angle of this tangent, up to tan(pi/16) in magnitude.
+#[inline(always)]
+fn small(t: f64) -> f64 {
+    let z = t * t;
+    t - t * (z * polynomial(&NEAR, z))
+}
+
+/// As [`arctan2`], of any angle.
+#[inline(never)]
+fn wide(y: f64, x: f64) -> f64 {
     let width = x.abs();
     let (low, high) = if y > width { (width, y) } else { (y, width) };
     // The triangle is turned back by a multiple of pi/8 so that a short polynomial does. (Tables or masks in place of the
@@ -80,8 +94,7 @@ pub(super) fn arctan2(y: f64, x: f64) -> f64 {
     };
     // The smallest number: nothing over nothing.
     let t = (low - turn_tan * high) / (high + turn_tan * low + f64::MIN_POSITIVE);
-    let z = t * t;
-    let angle = turn + (t - t * z * polynomial(&NEAR, z));
+    let angle = turn + small(t);
     let angle = if y > width { FRAC_PI_2 - angle } else { angle };
     if x < 0.0 { PI - angle } else { angle }
 }

@@ -24,6 +24,7 @@ use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
+pub(crate) use pass::drawn2;
 use reservoir::Reservoir;
 
 /// Lights with random ranges, `picks` of them shaded.

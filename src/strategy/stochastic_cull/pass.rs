@@ -47,8 +47,7 @@ impl FrameSampler for Sampler {
         let key = RunKey { seed: hash(&[frame.key.seed, u64::from_le_bytes(*b"lightrng")]), ..frame.key };
         let tree = self.tree.resized(|volume, light| {
             let u = Sequence::new(key, light, frame.points).pass(pass).choice(0, 1);
-            let radius2 = (f64::from(volume.radius2) / (1.0 - u)) as f32;
-            radius2.min(self.longest2)
+            drawn2(volume.radius2, u, self.longest2)
         });
         Pass { sampler: self, tree }
     }
@@ -98,4 +97,11 @@ impl LightSampler for Pass<'_> {
     fn heap_bytes(&self) -> usize {
         self.tree.heap_bytes()
     }
+}
+
+/// The square of the range that `u` in `[0, 1)` draws, from that at 0 up to the longest; in m^2.
+#[inline]
+pub(crate) fn drawn2(least2: f32, u: f64, longest2: f32) -> f32 {
+    // 1 - u is never 0: a range by 1 / u would be infinite once in 2^24 draws of f32.
+    ((f64::from(least2) / (1.0 - u)) as f32).min(longest2)
 }

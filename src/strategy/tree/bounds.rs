@@ -166,7 +166,7 @@ impl Bounds {
 
 /// Centre and half extents of a box, in f32: the centre is any number near the middle, the half extents reach from it to
 /// beyond both ends.
-pub(super) fn centred(low: Vec3A, high: Vec3A) -> (Vec3, Vec3) {
+pub(crate) fn centred(low: Vec3A, high: Vec3A) -> (Vec3, Vec3) {
     let centre = 0.5 * low + 0.5 * high;
     let (exact, low, high) = (centre.as_dvec3(), low.as_dvec3(), high.as_dvec3());
     (centre.into(), round((high - exact).max(exact - low), f32::next_up).into())

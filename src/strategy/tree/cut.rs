@@ -219,15 +219,13 @@ impl<const N: usize> Cluster<'_, N> {
     /// variance taken relative to the squared mean, so that it has no unit.
     ///
     /// With E and V of the lights' intensities (e) and of 1/d^2 (g), d spread evenly over [a, b]: the variance of the product
-    /// is V_e E_g^2 + E_e^2 V_g + V_e V_g. Relative to the squared mean that is `e + g + e g`, and g is (b - a)^2 / (3 a b):
-    /// E[g^2] - E[g]^2 itself has no correct digit in f32 once a cluster is far.
+    /// is V_e E_g^2 + E_e^2 V_g + V_e V_g. Relative to the squared mean that is `e + g + e g`.
     pub(in crate::strategy) fn uniformity(&self, at: &Receiver) -> f32 {
         let [near, far] = self.parent.distances(self.slot, at).map(f64::from);
         if near <= 0.0 {
             return 0.0;
         }
-        let (e, g) =
-            (f64::from(self.node.map_or(0.0, |node| node.unevenness)), (far - near).powi(2) / (3.0 * near * far));
+        let (e, g) = (f64::from(self.node.map_or(0.0, |node| node.unevenness)), relative_variance(near, far));
         (1.0 + (e + g + e * g).sqrt()).powf(-0.25) as f32
     }
 
@@ -240,4 +238,11 @@ impl<const N: usize> Cluster<'_, N> {
     pub(in crate::strategy) fn bound(&self, at: &Receiver) -> f32 {
         self.parent.upper_bound(self.slot, at)
     }
+}
+
+/// Variance of 1/d^2 over its squared mean, for distances d spread evenly over `[near, far]`.
+///
+/// E[g^2] - E[g]^2 itself has no correct digit in f32 once a cluster is far.
+pub(crate) fn relative_variance(near: f64, far: f64) -> f64 {
+    (far - near).powi(2) / (3.0 * near * far)
 }

@@ -23,7 +23,7 @@ pub(super) enum Slot {
 
 /// Directions are kept in 16 bits a component, their boxes rounded outward: a box of directions is then at most two steps
 /// wider, and exact for what faces along an axis. A power of two, so that 0 and 1 stay what they are.
-const STEP: f32 = 1.0 / 16_384.0;
+pub(crate) const STEP: f32 = 1.0 / 16_384.0;
 
 /// Up to `N` clusters or lights and what bounds each; lengths in metres.
 #[derive(Clone, Debug)]
@@ -77,9 +77,7 @@ impl<const N: usize> Node<N> {
         let (centre, half) = centred(bounds.low, bounds.high);
         for k in 0..3 {
             (self.centre[k][j], self.half[k][j]) = (centre[k], half[k]);
-            let (low, high) = ((bounds.axis_low[k] / STEP).floor() as i16, (bounds.axis_high[k] / STEP).ceil() as i16);
-            let middle = low.midpoint(high);
-            (self.axis[k][j], self.axis_half[k][j]) = (middle, (high - middle).max(middle - low));
+            (self.axis[k][j], self.axis_half[k][j]) = steps(bounds.axis_low[k], bounds.axis_high[k]);
         }
         let full: f64 = items.iter().map(|item| f64::from(item.full) * f64::from(item.peak)).sum();
         self.cut[j] = bounds.cut;
@@ -164,6 +162,13 @@ impl<const N: usize> Node<N> {
     fn vector(lanes: &[[f32; N]; 3], j: usize) -> Vec3 {
         Vec3::new(lanes[0][j], lanes[1][j], lanes[2][j])
     }
+}
+
+/// Centre and half extent of an interval of directions' components, in units of [`STEP`]; none of it is left out.
+pub(crate) fn steps(low: f32, high: f32) -> (i16, i16) {
+    let (low, high) = ((low / STEP).floor() as i16, (high / STEP).ceil() as i16);
+    let middle = low.midpoint(high);
+    (middle, (high - middle).max(middle - low))
 }
 
 /// A direction, or half the extent of a box of them, of one slot.
