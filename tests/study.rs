@@ -450,3 +450,43 @@ fn the_quality_is_the_variance_of_an_estimate() {
         );
     }
 }
+
+#[test]
+fn soft_shadows_fall_as_the_rays_and_the_best_shares_are_best() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options {
+        pixels: 192,
+        repeats: 8,
+        overrides: Overrides { resolution: Some((48, 32)), ..Overrides::default() },
+        ..options(folder.path(), "power")
+    };
+    let study = ran("soft-shadows", &options, folder.path());
+    let rows = |table: &str| {
+        let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");
+        let record = &study.record.tables[at];
+        study.rows[at].iter().map(move |cells| move |column: &str| &cells[record.column(column).expect("the column")])
+    };
+    let number = |cell: &Cell| cell.number().unwrap_or_else(|| panic!("{cell:?} is no number"));
+    // Independent points, and a penumbra that many receivers lie in.
+    let law = rows("laws").find(|cell| *cell("light") == "large random".into()).expect("the large light");
+    assert!((number(law("exponent")) + 1.0).abs() < 0.15, "relMSE grows as rays^{}", number(law("exponent")));
+    let penumbras: Vec<f64> = rows("rays").map(|cell| number(cell("penumbra_share"))).collect();
+    assert!(penumbras.is_sorted() && penumbras[0] < 0.01 && penumbras[penumbras.len() - 1] > 0.1, "{penumbras:?}");
+    for cell in rows("shares") {
+        let by = cell("by");
+        if *by == "optimal".into() {
+            assert_eq!(number(cell("distance")), 1.0);
+        } else {
+            // Beyond what the runs' noise explains.
+            assert!(number(cell("distance")) > 1.2, "{by:?} is {} of the optimal", number(cell("distance")));
+        }
+        assert!(*by != "heuristic".into() || number(cell("gain")) > 1.2, "gain {}", number(cell("gain")));
+    }
+    for cell in rows("ways") {
+        assert!(number(cell("projected_variance")) < 1e-9, "every projected point is worth the same");
+        let (ratio, pays) = (number(cell("ratio")), number(cell("solid_angle_cost")) < 1.0);
+        assert!(pays == (*cell("auto") == "solid-angle".into()) || (1.0..=4.0).contains(&ratio), "at {ratio}");
+    }
+    let picture = &study.record.pictures[0];
+    assert!(folder.path().join("soft-shadows").join(&picture.file).is_file(), "{}", picture.file);
+}

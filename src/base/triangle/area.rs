@@ -14,6 +14,9 @@ pub fn uniform_point(u: [f32; 2]) -> [f32; 2] {
 /// Folds the square onto the triangle along a diagonal: neighbours stay neighbours and no region is stretched more than
 /// twofold, where [`uniform_point`] crowds the points of one side at a corner. Well spread points stay well spread.
 ///
+/// Sampling by area keeps to [`uniform_point`] all the same: with R2's points, `study soft-shadows` saw 1.0 to 1.3 times its error
+/// by this map under a light of 3 m, 0.7 to 1.5 times under one of 1 m and 0.5 to 1.2 times under one of 30 cm.
+///
 /// Source: Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #[inline]
 pub fn low_distortion_point(u: [f32; 2]) -> [f32; 2] {

@@ -1,6 +1,5 @@
 //! What does a shadow look like, and where are umbra and penumbra?
 
-use super::scene::RESOLUTION;
 use crate::base::random::Stream;
 use crate::image::Picture;
 use crate::render::exact::shadowed;
@@ -55,12 +54,13 @@ const ORANGE: Vec3 = Vec3::new(1.0, 0.35, 0.0);
 /// The exact image with the outlines of umbra (blue) and penumbra (orange).
 pub(super) fn outlined(stage: &Stage, exact: &[Vec3], shadows: &[Shadow]) -> Vec<[f32; 3]> {
     let mut pixels = picture(stage, exact);
-    let of = |x: u32, y: u32| match stage.view().pixels()[(y * RESOLUTION.0 + x) as usize] {
+    let (width, height) = stage.view().resolution();
+    let of = |x: u32, y: u32| match stage.view().pixels()[(y * width + x) as usize] {
         Seen::Receiver(index) => Some(shadows[index as usize]),
         Seen::Sky | Seen::Emitter(_) | Seen::EmitterBack => None,
     };
-    for y in 0..RESOLUTION.1 - 1 {
-        for x in 0..RESOLUTION.0 - 1 {
+    for y in 0..height - 1 {
+        for x in 0..width - 1 {
             let Some(own) = of(x, y) else { continue };
             let others = [of(x + 1, y), of(x, y + 1)];
             let border = |kind| others.iter().flatten().any(|other| (own == kind) != (*other == kind));
@@ -69,15 +69,15 @@ pub(super) fn outlined(stage: &Stage, exact: &[Vec3], shadows: &[Shadow]) -> Vec
                 (false, true) => ORANGE,
                 (false, false) => continue,
             };
-            pixels[(y * RESOLUTION.0 + x) as usize] = (colour / stage.scene().exposure()).to_array();
+            pixels[(y * width + x) as usize] = (colour / stage.scene().exposure()).to_array();
         }
     }
     pixels
 }
 
-/// Pictures of one size side by side, row below row.
-pub(super) fn sheet(rows: &[Vec<Vec<[f32; 3]>>]) -> Picture {
-    let (width, height) = (RESOLUTION.0 as usize, RESOLUTION.1 as usize);
+/// Pictures of that size, across and down, side by side, row below row.
+pub(super) fn sheet(rows: &[Vec<Vec<[f32; 3]>>], size: (u32, u32)) -> Picture {
+    let (width, height) = (size.0 as usize, size.1 as usize);
     let columns = rows.first().map_or(0, Vec::len);
     let pixels = rows.iter().flat_map(|row| {
         (0..height).flat_map(move |y| row.iter().flat_map(move |cell| cell[y * width..(y + 1) * width].iter().copied()))

@@ -86,10 +86,10 @@ pub(super) fn laws() -> TableRecord {
 const OWN: f64 = 1e-8;
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
-    let mut pictures = Vec::new();
-    for (size, side) in SIZES {
+    let (mut pictures, mut size) = (Vec::new(), (0, 0));
+    for (name, side) in SIZES {
         session.watch.check()?;
-        let stage = Stage::new(one_light(side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
+        let stage = Stage::new(one_light(session, side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
         let whole = Target::whole(&stage);
         let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
         let shadows: Vec<Shadow> = stage.receivers().par_iter().map(|at| shadow(&stage, at)).collect();
@@ -112,13 +112,13 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .iter()
             .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
             .collect();
-        let measured = measure(session, &format!("{size} light"), &contenders, &few.receivers, &reference.truth)?;
+        let measured = measure(session, &format!("{name} light"), &contenders, &few.receivers, &reference.truth)?;
         for points in POINTS {
-            let name = format!("{size}, {points}");
+            let series = format!("{name} {points}");
             let mut errors = Vec::new();
             for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
                 let mut cells: Vec<Cell> = vec![
-                    name.as_str().into(),
+                    series.as_str().into(),
                     f64::from(side).into(),
                     share(Shadow::Umbra).into(),
                     share(Shadow::Penumbra).into(),
@@ -133,19 +133,24 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             let law = PowerLaw::fit(errors);
             writer.row(
                 "laws",
-                vec![name.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()],
+                vec![series.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()],
             )?;
         }
         let shown = samplers.iter().filter(|(points, ..)| *points == "random");
         let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
         row.push(outlined(&stage, seen.truth.mean(), &shadows));
         pictures.push((row, stage.scene().exposure()));
+        size = stage.view().resolution();
     }
     let exposure = pictures.first().map_or(1.0, |(_, exposure)| *exposure);
     let rows: Vec<_> = pictures.into_iter().map(|(row, _)| row).collect();
-    let title = "Lights of 5 cm, 30 cm, 1 m and 3 m (down) by 1, 10, 100, 1,000 rays a triangle and exact (across), there with the outlines of \
-                 umbra (blue) and penumbra (orange)";
-    image::write(&writer.picture("shadows.png", title.into()), &sheet(&rows), exposure)?;
+    let sizes = SIZES.map(|(_, side)| format!("{side} m")).join(", ");
+    let rays = RAYS.map(|rays| rays.to_string()).join(", ");
+    let title = format!(
+        "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
+         penumbra (orange)"
+    );
+    image::write(&writer.picture("shadows.png", title), &sheet(&rows, size), exposure)?;
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use crate::scene::camera::Camera;
 use crate::scene::light::Shape;
 use crate::scene::small::{cuboid, ground, panel};
 use crate::scene::{Material, Parts, Scene, Surface};
+use crate::study::Session;
 use glam::Vec3;
 
 /// Sizes of the one light: what the lecture calls them, and the side of a square in m.
@@ -13,8 +14,8 @@ pub(super) const SIZES: [(&str, f32); 4] = [("very small", 0.05), ("small", 0.3)
 /// Intensity of the one light along its normal, in cd, whatever its size.
 const CANDELA: f32 = 400.0;
 
-/// Pixels across and down of a picture.
-pub(super) const RESOLUTION: (u32, u32) = (192, 128);
+/// Pixels across and down of a picture, where nothing else is asked for.
+const RESOLUTION: (u32, u32) = (192, 128);
 
 /// Exposure value of the pictures.
 const EV100: f32 = 3.2;
@@ -33,14 +34,14 @@ fn square(centre: Vec3, to: Vec3, [across, up]: [f32; 2], candela: f32) -> [Shap
 pub(super) const HEIGHT: f32 = 4.0;
 
 /// A post on a plain, lit by one square light of side `side` at a height, both in m.
-pub(super) fn one_light(side: f32, height: f32) -> Result<Scene> {
+pub(super) fn one_light(session: &Session<'_>, side: f32, height: f32) -> Result<Scene> {
     let mut parts = ground(30.0, square(Vec3::new(-3.0, -1.5, height), Vec3::ZERO, [side; 2], CANDELA).to_vec());
     parts.surfaces.extend(cuboid(Vec3::new(-0.4, -0.4, 0.0), Vec3::new(0.4, 0.4, 1.6)));
-    seen(parts, format!("one-light-{side}-at-{height}"), Vec3::new(3.4, -4.6, 3.6), Vec3::new(0.9, 0.3, 0.3))
+    seen(session, parts, format!("one-light-{side}-at-{height}"), Vec3::new(3.4, -4.6, 3.6), Vec3::new(0.9, 0.3, 0.3))
 }
 
 /// Posts and walls, dark and bright, under six lights from a lamp to a sign, near and far, open and hidden.
-pub(super) fn several_lights() -> Result<Scene> {
+pub(super) fn several_lights(session: &Session<'_>) -> Result<Scene> {
     let floor = Vec3::ZERO;
     let lights = [
         square(Vec3::new(-3.0, -1.5, 4.0), floor, [1.0, 1.0], 300.0),
@@ -60,10 +61,11 @@ pub(super) fn several_lights() -> Result<Scene> {
     stand([-3.0, 4.0, 0.0], [3.0, 4.3, 2.6], 2);
     let material = |name: &str, albedo| Material { name: name.into(), albedo: Vec3::splat(albedo), street: false };
     parts.materials.extend([material("dark", 0.06), material("bright", 0.75)]);
-    seen(parts, "several-lights".into(), Vec3::new(4.2, -6.4, 5.2), Vec3::new(0.4, 0.8, 0.4))
+    seen(session, parts, "several-lights".into(), Vec3::new(4.2, -6.4, 5.2), Vec3::new(0.4, 0.8, 0.4))
 }
 
-fn seen(parts: Parts, name: String, from: Vec3, to: Vec3) -> Result<Scene> {
-    let camera = Camera::new(from, to, 42.0, RESOLUTION.0, RESOLUTION.1)?;
+fn seen(session: &Session<'_>, parts: Parts, name: String, from: Vec3, to: Vec3) -> Result<Scene> {
+    let (width, height) = session.options.overrides.resolution.unwrap_or(RESOLUTION);
+    let camera = Camera::new(from, to, 42.0, width, height)?;
     Scene::new(Parts { name, camera, ev100: Some(EV100), ..parts })
 }

@@ -60,7 +60,7 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
 }
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
-    let stage = Stage::new(several_lights()?, LeaveOut::Yes, Offset::SCALED);
+    let stage = Stage::new(several_lights(session)?, LeaveOut::Yes, Offset::SCALED);
     let target = Target::of(&stage, spread(stage.receivers(), session.options.pixels));
     let receivers: &[Receiver] = &target.receivers;
     let reference = Reference::compute(&target, 1e-5, &session.options.cache, session.watch)?;

@@ -112,7 +112,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         let stages = LightSampling::NAMED
             .iter()
             .map(|&(_, by)| {
-                let stage = Stage::new(one_light(side, height)?, LeaveOut::Yes, Offset::SCALED);
+                let stage = Stage::new(one_light(session, side, height)?, LeaveOut::Yes, Offset::SCALED);
                 Ok(stage.with_light_sampling(by))
             })
             .collect::<Result<Vec<_>>>()?;
