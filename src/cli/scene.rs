@@ -30,7 +30,7 @@ pub(super) struct SceneOptions {
     /// How shadow rays keep off their own surfaces
     #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
     offset: Offset,
-    /// How the point on a triangle light is drawn: area, solid-angle, projected, auto
+    /// How the point on a triangle light is drawn: area, solid-angle, projected, auto; references always take area
     #[arg(long, value_name = "WAY", default_value = "auto", value_parser = light_sampling)]
     light_sampling: LightSampling,
     /// Leave out what the scene provably does not need
