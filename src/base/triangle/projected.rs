@@ -32,18 +32,21 @@ struct Piece {
     triple: f64,
 }
 
-/// An interval that holds a root narrows by at least half in each two of these; Newton's steps take three to six.
-const STEPS: usize = 100;
+/// In each of these the error halves, or else the interval that holds the root, until 1e-12 is left; Newton's steps take three to six.
+const STEPS: usize = 120;
 
 impl Projected {
     /// A sampler for a receiver's unit normal; `None` where no light arrives.
     pub fn new(seen: &Seen, normal: DVec3) -> Option<Self> {
         let (parts, count) = seen.above(normal);
         let piece = |part: &Part| {
-            let [a, b, c] = part.seen.corners;
             let irradiance = part.seen.whole(normal).abs();
             let by_angle = SolidAngle::new(&part.seen).filter(|_| irradiance > 0.0)?;
-            Some(Piece { part: *part, by_angle, irradiance, triple: a.dot((b - a).cross(c - a)).abs() })
+            // By way of the steradians at the first corner, which keep their digits where the product itself would cancel:
+            // next to a corner at the receiver it would be off by orders of magnitude.
+            let [la, _, _] = part.seen.lengths;
+            let triple = part.seen.steradians_per_area([0.0; 2]) * (la * la * la);
+            Some(Piece { part: *part, by_angle, irradiance, triple })
         };
         // Parts that add nothing are left out: a corner or an edge that touches the horizon.
         let mut pieces = parts[..count].iter().filter_map(piece);
@@ -106,8 +109,8 @@ impl Piece {
 #[inline]
 fn root(target: f64, total: f64, guess: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut above) = (0.0, high);
-    let mut at = guess.clamp(0.0, high);
-    for step in 0..STEPS {
+    let (mut at, mut before) = (guess.clamp(0.0, high), f64::INFINITY);
+    for _ in 0..STEPS {
         let (value, slope) = function(at);
         let off = value - target;
         if off.abs() <= 4e-16 * total {
@@ -120,7 +123,10 @@ fn root(target: f64, total: f64, guess: f64, high: f64, function: impl Fn(f64) -
         }
         let newton = at - off / slope;
         // A step that leaves the bracket, or a function too flat or too curved for Newton's: halve.
-        let next = if newton > low && newton < above && step % 8 != 7 { newton } else { 0.5 * (low + above) };
+        // Once only rounding is left, nothing halves.
+        let helps = off.abs() <= (0.5 * before).max(1e-12 * total);
+        let next = if newton > low && newton < above && helps { newton } else { 0.5 * (low + above) };
+        before = off.abs();
         if (next - at).abs() <= 1e-16 * high || next <= low || next >= above {
             return next.clamp(low, above);
         }
