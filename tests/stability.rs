@@ -63,6 +63,20 @@ fn the_table_of_a_file_shows_every_category_and_the_textbook() {
 }
 
 #[test]
+fn a_header_may_be_a_remark_and_a_remark_may_speak_of_categories() {
+    let header = String::from_utf8_lossy(VECTORS).lines().next().expect("a header").to_owned();
+    for text in [
+        format!("{header}\n{ROW}"),
+        format!("# {header}\n{ROW}"),
+        format!("#{}\n{ROW}", header.replace(',', ", ")),
+        format!("# categories, all of them\n# category names stand first\n{ROW}"),
+        ROW.to_owned(),
+    ] {
+        assert_eq!(parse(text.as_bytes(), "file".as_ref()).expect("a right header").len(), 1, "{text}");
+    }
+}
+
+#[test]
 fn the_table_of_cases_shows_each() {
     CASES.iter().fold(stability(&[]).success(), |shown, case| shown.stdout(contains(case.name)));
 }
@@ -101,6 +115,19 @@ fn a_malformed_file_is_refused_with_line_and_column() {
         (String::new(), ":1: `category`: column 1: there are no rows"),
     ] {
         let file = file(&rows);
+        let name = file.path().to_str().expect("a name");
+        stability(&["--vectors", name]).code(2).stdout("").stderr(contains(format!("{name}{said}")));
+    }
+    let header = String::from_utf8_lossy(VECTORS).lines().next().expect("a header").to_owned();
+    for (header, said) in [
+        (header.replace("ax,ay,az", "ax,az,ay"), ":1: `ay`: column 3: the header says `az`; `ay` is right"),
+        (format!("# {}", header.replace("nx,ny", "ny,nx")), ":1: `nx`: column 11: the header says `ny`; `nx` is right"),
+        (format!("#{header},remark"), ":1: column 16: the header goes on with `remark`; 15 columns are right"),
+        (header.replace(",irradiance", ""), ":1: `irradiance`: column 15: the header ends here, with 14 columns"),
+        (format!("{header}\n{ROW}\n# category,bx"), ":3: `ax`: column 2: the header says `bx`; `ax` is right"),
+    ] {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(file.path(), format!("{header}\n{ROW}\n")).expect("written");
         let name = file.path().to_str().expect("a name");
         stability(&["--vectors", name]).code(2).stdout("").stderr(contains(format!("{name}{said}")));
     }
