@@ -144,7 +144,7 @@ fn alone(shape: Shape, like: &Scene) -> Stage {
 
 #[test]
 fn the_truth_is_that_of_f64() {
-    /// Points a half; a light that is far away then differs by 1e-4 or so.
+    /// Points in each half.
     const POINTS: u32 = 1_000;
     const RECEIVERS: usize = 60;
     let (mut failed, mut sharp, mut blunt, mut delta) = (Vec::new(), 0, 0, 0);
@@ -168,56 +168,61 @@ fn the_truth_is_that_of_f64() {
                 let spread = (found.halves[0] - found.halves[1]).abs().max_element();
                 let off = (found.mean() - wanted).abs().max_element();
                 let size = wanted.max_element();
+                // Where f32 may take the one side of a plane for the other.
+                if rounding > 0.5 {
+                    continue;
+                }
                 let mut limit = rounding * size;
                 if matches!(shape, Shape::Triangle { .. }) {
                     // Two halves say of themselves how far they are off, about.
                     limit += 2e-3 * size + 4.0 * spread;
-                    // Next to a light by area most points are worth next to nothing.
+                    // Next to a light most points by area are worth next to nothing.
                     if spread < 1e-2 * size { sharp += 1 } else { blunt += u32::from(size > 0.0) }
                 } else {
                     delta += u32::from(size > 0.0);
                 }
                 lit += u32::from(size > 0.0);
-                // Where f32 may take the one side of a plane for the other.
-                let hidden = rounding > 0.5;
-                if off > limit && !hidden {
+                if off > limit {
                     failed.push(format!("{name}: {} for {wanted} of {shape:?} at {at:?}", found.mean()));
                 }
             }
         }
         assert!(lit > 50, "{name}: {lit} pairs of light and receiver say anything");
     }
-    println!("{sharp} {blunt} {delta}");
     assert!(failed.is_empty(), "{} fail:\n{}", failed.len(), failed[..failed.len().min(20)].join("\n"));
-    assert!(delta > 5_000 && sharp > 3_000 && blunt < sharp / 5, "{delta}, {sharp} and {blunt} say anything");
+    assert!(delta > 5_000 && sharp > 1_000 && blunt < sharp / 20, "{delta}, {sharp} and {blunt} say anything");
 }
 
 /// One lamp, and a million bulbs that light nothing.
 static A_MILLION: LazyLock<Stage> = LazyLock::new(|| Stage::new(scene(MILLION, 16 * 9), LeaveOut::No, Offset::SCALED));
 
 /// Strategies that take longer than a few seconds to verify among a million lights.
-const SLOW: [&str; 0] = [];
+const SLOW: [&str; 4] = ["all", "allocate", "stochastic-cull", "oracle"];
 
 fn assert_verified_among_a_million(wanted: impl Fn(&str) -> bool) {
     let options = Options { receivers: 2, draws: 400, batches: 50, points: 1, ..Options::default() };
-    let start = std::time::Instant::now();
     let verifier = Verifier::new(&A_MILLION, options);
-    println!("truth {:?}", start.elapsed());
     assert!(verifier.truths().iter().any(|truth| truth.total() > 0.0), "{MILLION} is black");
-    let mut failed = Vec::new();
+    let (mut failed, mut tried) = (Vec::new(), 0);
     for entry in STRATEGIES.iter().filter(|entry| wanted(entry.info().name)) {
-        let start = std::time::Instant::now();
         let strategy = parse(entry.info().name).expect("a name of the registry");
         let checks = verifier.verify(&strategy).expect("a sampler");
-        println!("{} {:?}", strategy.name(), start.elapsed());
+        tried += 1;
         failed.extend(checks.iter().filter(|c| !c.passed).map(|c| format!("{}: {c}", strategy.name())));
     }
+    assert!(tried > 0, "no strategy is tried");
     assert!(failed.is_empty(), "seed {}:\n{}", options.seed, failed.join("\n"));
 }
 
 #[test]
 fn strategies_keep_their_contract_among_a_million_lights() {
     assert_verified_among_a_million(|name| !SLOW.contains(&name));
+}
+
+#[test]
+#[ignore = "two minutes: strategies that look at every light"]
+fn slow_strategies_keep_their_contract_among_a_million_lights() {
+    assert_verified_among_a_million(|name| SLOW.contains(&name));
 }
 
 #[test]

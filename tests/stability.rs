@@ -42,6 +42,12 @@ fn stability(arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("citylights").expect("the binary").arg("stability").args(arguments).assert()
 }
 
+/// The header without the sign of a remark.
+fn header() -> String {
+    let text = String::from_utf8_lossy(VECTORS);
+    text.lines().next().expect("a header").trim_start_matches(['#', ' ']).to_owned()
+}
+
 /// A file of the header and these rows.
 fn file(rows: &str) -> tempfile::NamedTempFile {
     let file = tempfile::NamedTempFile::new().expect("a file");
@@ -64,7 +70,7 @@ fn the_table_of_a_file_shows_every_category_and_the_textbook() {
 
 #[test]
 fn a_header_may_be_a_remark_and_a_remark_may_speak_of_categories() {
-    let header = String::from_utf8_lossy(VECTORS).lines().next().expect("a header").to_owned();
+    let header = header();
     for text in [
         format!("{header}\n{ROW}"),
         format!("# {header}\n{ROW}"),
@@ -118,7 +124,7 @@ fn a_malformed_file_is_refused_with_line_and_column() {
         let name = file.path().to_str().expect("a name");
         stability(&["--vectors", name]).code(2).stdout("").stderr(contains(format!("{name}{said}")));
     }
-    let header = String::from_utf8_lossy(VECTORS).lines().next().expect("a header").to_owned();
+    let header = header();
     for (header, said) in [
         (header.replace("ax,ay,az", "ax,az,ay"), ":1: `ay`: column 3: the header says `az`; `ay` is right"),
         (format!("# {}", header.replace("nx,ny", "ny,nx")), ":1: `nx`: column 11: the header says `ny`; `nx` is right"),

@@ -342,21 +342,14 @@ fn no_switch_between_methods_makes_a_step() {
     const STEPS: u32 = 20_000;
     for (name, path) in &paths {
         let mut last: Option<[f64; 2]> = None;
-        let mut far = (0.0f64, 0.0f64);
         for step in 0..=STEPS {
             let corners = path((f64::from(step) + 0.3) / f64::from(STEPS));
             let (seen, plain) = (Seen::new(corners), corners.map(|corner| corner.to_array()));
             let (found, exact) = (seen.solid_angle(), precise::solid_angle(plain));
             assert!((found - exact).abs() <= 1e-7 * exact.abs(), "{name} {step}: {found} for {exact} sr");
             let (found, exact) = (seen.irradiance(normal), precise::irradiance(plain, normal.to_array()));
-            let (relative, floor) = if name.ends_with("far away") { (1e-7, 1e-24) } else { (1e-9, 1e-15) };
-            far = (far.0.max((found - exact).abs() - 1e-7 * exact), far.1.max(exact));
-            if step == STEPS {
-                println!("{name}: {far:?}");
-            }
-            if std::env::var("LOOK").is_ok() {
-                continue;
-            }
+            // Far away up to 1e-19 arrives; ours is off by 4e-29, with edges of plain a x b it would be by 3e-23.
+            let (relative, floor) = if name.ends_with("far away") { (1e-7, 1e-26) } else { (1e-9, 1e-15) };
             assert!((found - exact).abs() <= relative * exact + floor, "{name} {step}: {found} for {exact}");
             // The point for one pair of numbers moves along with the triangle.
             let Some(sampler) = SolidAngle::new(&seen) else { continue };
