@@ -90,8 +90,8 @@ fn every_strategy_keeps_its_contract_and_the_exact_mean() {
 
 /// What a light adds at a receiver with nothing in between, in f64, and what f32 may make of it: its relative error.
 ///
-/// The error is a few times 1e-7 of what the cosine at the receiver, that at the light and a spot's ramp are made from: the
-/// less is left of one of these, the more.
+/// The error is a few times 1e-7 of what the cosine at the receiver, that at the light and a spot's ramp are made from:
+/// the less is left of one of these, the more.
 fn unshadowed(shape: &Shape, at: &Receiver) -> (DVec3, f64) {
     const ROUNDING: f64 = 5e-7;
     let (position, normal) = (at.position.as_dvec3(), at.normal.as_dvec3());
@@ -234,7 +234,8 @@ fn one_light_among_a_million_is_found() {
     let truth = sum("all", 1);
     assert!(truth > 0.0);
     // Whoever looks at what a light can add at the point finds the one that adds anything.
-    // From the box's walls the bulbs are above the horizon, and the ground hides them: what is picked there is often dark.
+    // From the box's walls the bulbs are above the horizon, and the ground hides them: what is picked there is often
+    // dark.
     for name in ["intensity", "light-tree"] {
         let found = sum(name, 16) / truth;
         assert!((found - 1.0).abs() < 0.3, "{name}: {found} of the light");

@@ -1,5 +1,5 @@
-//! Promise: whatever the light and the receiver, what a point adds is nothing or a sound number, and a light that is worth
-//! nothing to choose adds nothing.
+//! Promise: whatever the light and the receiver, what a point adds is nothing or a sound number, and a light that is
+//! worth nothing to choose adds nothing.
 
 use citylights::base::triangle::uniform_point;
 use citylights::scene::light::{Light, Shape};

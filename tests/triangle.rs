@@ -1,4 +1,5 @@
-//! Promise: what a receiver sees of a triangle is right to the last digits that matter, and points on it follow their density.
+//! Promise: what a receiver sees of a triangle is right to the last digits that matter, and points on it follow their
+//! density.
 
 #![cfg(feature = "measure")]
 
@@ -200,8 +201,8 @@ fn a_point_lies_in_its_cell() {
     }
 }
 
-/// Chi-squared of a sampler's points against the share of the density that each cell of the triangle should get, and its
-/// degrees of freedom.
+/// Chi-squared of a sampler's points against the share of the density that each cell of the triangle should get, and
+/// its degrees of freedom.
 fn chi_squared(
     sample: impl Fn([f64; 2]) -> [f64; 2],
     share: impl Fn([[f64; 3]; 3]) -> f64,
@@ -319,8 +320,8 @@ type Path = Box<dyn Fn(f64) -> [DVec3; 3]>;
 
 #[test]
 fn no_switch_between_methods_makes_a_step() {
-    // Paths along which a triangle passes every switch: from afar to touching, through its plane, past an edge, over the
-    // horizon, from long and thin to round. A step anywhere would be an error there.
+    // Paths along which a triangle passes every switch: from afar to touching, through its plane, past an edge, over
+    // the horizon, from long and thin to round. A step anywhere would be an error there.
     let base = [DVec3::new(-0.3, -0.2, 0.0), DVec3::new(0.7, -0.1, 0.1), DVec3::new(0.1, 0.9, -0.2)];
     let by = move |offset: DVec3| base.map(|corner| corner + offset);
     let normal = DVec3::new(0.48, 0.64, 0.6);

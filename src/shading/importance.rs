@@ -37,7 +37,8 @@ pub fn importance(light: &Light, at: &Receiver) -> f32 {
             let top = first + a.max(b).max(0.0);
             let bottom = first + a.min(b).min(0.0);
             if top <= 0.0 {
-                // Points of the triangle are rounded otherwise: where one may count as above the horizon, this does too.
+                // Points of the triangle are rounded otherwise: where one may count as above the horizon, this does
+                // too.
                 let sum = |edge: Vec3| edge.abs().element_sum();
                 let rounding = 1e-6 * (sum(from_corner) + sum(light.a) + sum(light.b));
                 if top <= -rounding {
@@ -52,8 +53,8 @@ pub fn importance(light: &Light, at: &Receiver) -> f32 {
     }
 }
 
-/// What a triangle adds whose points are so high above the horizon on average; `emitted` is its strength times twice its
-/// area times the cosine there, times the distance.
+/// What a triangle adds whose points are so high above the horizon on average; `emitted` is its strength times twice
+/// its area times the cosine there, times the distance.
 #[inline]
 fn triangle(light: &Light, emitted: f32, height: f32, from_corner: Vec3) -> f32 {
     let to_centre = (light.a + light.b) / 3.0 - from_corner;
@@ -62,7 +63,8 @@ fn triangle(light: &Light, emitted: f32, height: f32, from_corner: Vec3) -> f32 
     positive(emitted * 0.5 * height / (d2 * d2))
 }
 
-/// 0 for NaN, which a receiver exactly on a light gives; a receiver so near that f32 overflows gets the greatest weight.
+/// 0 for NaN, which a receiver exactly on a light gives; a receiver so near that f32 overflows gets the greatest
+/// weight.
 #[inline]
 fn positive(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.min(f32::MAX) }

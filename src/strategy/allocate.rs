@@ -1,13 +1,15 @@
 //! How many points does each area light get, where a budget of them is shared out among receivers and lights?
 //!
-//! Every light is taken. Those without extent get one ray a pass; to each triangle a receiver gives `n` points on average, each
-//! of weight `1 / n`, in proportion to the light's solid angle times its radiance times the receiver's albedo. One factor for
-//! all receivers brings the mean over the image to `rays` points a receiver and pass, so that bright receivers get more.
+//! Every light is taken. Those without extent get one ray a pass; to each triangle a receiver gives `n` points on
+//! average, each of weight `1 / n`, in proportion to the light's solid angle times its radiance times the receiver's
+//! albedo. One factor for all receivers brings the mean over the image to `rays` points a receiver and pass, so that
+//! bright receivers get more.
 //!
-//! `n` is no whole number. It is rounded up or down at random, by one number for all lights (systematic sampling): so a light
-//! too weak for a point of its own is met now and then, with its weight, and nothing is lost.
+//! `n` is no whole number. It is rounded up or down at random, by one number for all lights (systematic sampling): so a
+//! light too weak for a point of its own is met now and then, with its weight, and nothing is lost.
 //!
-//! Source: the heuristic: the lecture on area lights that this project follows; the roulette: Arvo and Kirk, SIGGRAPH 1990.
+//! Source: the heuristic: the lecture on area lights that this project follows; the roulette: Arvo and Kirk, SIGGRAPH
+//! 1990.
 
 use super::parameters::Arguments;
 use super::tally::Tally;

@@ -8,12 +8,13 @@ use glam::DVec3;
 
 /// Points on a triangle, by their cosine to the receiver's normal over the solid angle; none below the horizon.
 ///
-/// The density is `cos / irradiance()` per steradian, so that all points of an unshadowed Lambertian light weigh the same. As
-/// there is no closed form for the map, the one for the plain solid angle ([`SolidAngle`]) is corrected by Newton's steps, each held
-/// within a bracket: the distribution functions rise, so the root is found from anywhere. A part's irradiance comes from
-/// the same code as the whole's.
+/// The density is `cos / irradiance()` per steradian, so that all points of an unshadowed Lambertian light weigh the
+/// same. As there is no closed form for the map, the one for the plain solid angle ([`SolidAngle`]) is corrected by
+/// Newton's steps, each held within a bracket: the distribution functions rise, so the root is found from anywhere. A
+/// part's irradiance comes from the same code as the whole's.
 ///
-/// Source: the two steps: Arvo, SIGGRAPH 2001 course 29, "Stratified sampling of spherical triangles"; the density: Lambert, 1760.
+/// Source: the two steps: Arvo, SIGGRAPH 2001 course 29, "Stratified sampling of spherical triangles"; the density:
+/// Lambert, 1760.
 #[derive(Clone, Copy, Debug)]
 pub struct Projected {
     parts: [Piece; 2],
@@ -32,7 +33,8 @@ struct Piece {
     triple: f64,
 }
 
-/// In each of these the error halves, or else the interval that holds the root, until 1e-12 is left; Newton's steps take three to six.
+/// In each of these the error halves, or else the interval that holds the root, until 1e-12 is left; Newton's steps
+/// take three to six.
 const STEPS: usize = 120;
 
 impl Projected {
@@ -42,8 +44,8 @@ impl Projected {
         let piece = |part: &Part| {
             let irradiance = part.seen.whole(normal).abs();
             let by_angle = SolidAngle::new(&part.seen).filter(|_| irradiance > 0.0)?;
-            // By way of the steradians at the first corner, which keep their digits where the product itself would cancel:
-            // next to a corner at the receiver it would be off by orders of magnitude.
+            // By way of the steradians at the first corner, which keep their digits where the product itself would
+            // cancel: next to a corner at the receiver it would be off by orders of magnitude.
             let [la, _, _] = part.seen.lengths;
             let triple = part.seen.steradians_per_area([0.0; 2]) * (la * la * la);
             Some(Piece { part: *part, by_angle, irradiance, triple })
@@ -56,7 +58,8 @@ impl Projected {
         Some(Self { parts: [first, second], count, irradiance, normal })
     }
 
-    /// The irradiance for unit radiance, as [`Seen::irradiance`] gives it: the density per steradian is the cosine over it.
+    /// The irradiance for unit radiance, as [`Seen::irradiance`] gives it: the density per steradian is the cosine over
+    /// it.
     #[inline]
     pub fn irradiance(&self) -> f64 {
         self.irradiance
@@ -83,7 +86,8 @@ impl Piece {
             let end = a + to_c * share;
             let length = end.length();
             let part = Seen { corners: [a, b, end], lengths: [la, lb, length] };
-            // Turning by a radian about b adds half the arc's integral; this is by how much the end turns for each share.
+            // Turning by a radian about b adds half the arc's integral; this is by how much the end turns for each
+            // share.
             let arc = Arc::new(normal, (b, lb), (end, length));
             let turn = self.triple * lb / arc.edge_normal2;
             (part.whole(normal).abs(), 0.5 * arc.integral(arc.angle).0 * turn)
@@ -104,8 +108,8 @@ impl Piece {
     }
 }
 
-/// Where within `[0, high]` a rising function takes the value `target`, up to rounding; `function` gives value and derivative,
-/// `total` is its value at `high`.
+/// Where within `[0, high]` a rising function takes the value `target`, up to rounding; `function` gives value and
+/// derivative, `total` is its value at `high`.
 #[inline]
 fn root(target: f64, total: f64, guess: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut above) = (0.0, high);
@@ -155,8 +159,8 @@ impl Arc {
         Self { at_pole, at_right, angle: arctan2(length, pole.0.dot(end.0)), edge_normal2: length * length }
     }
 
-    /// Twice the integral of cosine times sine from the pole to an angle (the light of a narrow wedge there, per radian of its
-    /// width), and its derivative.
+    /// Twice the integral of cosine times sine from the pole to an angle (the light of a narrow wedge there, per radian
+    /// of its width), and its derivative.
     #[inline]
     fn integral(&self, angle: f64) -> (f64, f64) {
         let (sin, cos) = angle.sin_cos();

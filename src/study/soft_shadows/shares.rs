@@ -134,8 +134,8 @@ fn pilot(stage: &Stage, at: &Receiver, seed: u64) -> Vec<Moment> {
 
 /// Points of each light at each receiver that leave the least squared error in all, about `budget` of them a receiver.
 ///
-/// A light of whole n >= 1 points leaves v / n, so that one more saves v / (n (n + 1)); one that is met with chance n < 1 leaves
-/// q / n - m^2. Numbers between are not tried: rounding them at random adds up to m^2 / 8.
+/// A light of whole n >= 1 points leaves v / n, so that one more saves v / (n (n + 1)); one that is met with chance n <
+/// 1 leaves q / n - m^2. Numbers between are not tried: rounding them at random adds up to m^2 / 8.
 fn best(moments: &[Vec<Moment>], budget: f64) -> Vec<Vec<f32>> {
     // Where a point more saves less than `price`.
     let points = |of: &Moment, price: f64| {
