@@ -44,23 +44,26 @@ pub fn importance(light: &Light, at: &Receiver) -> f32 {
                 if top <= -rounding {
                     return 0.0;
                 }
-                return triangle(light, strength * facing, rounding, from_corner);
+                return triangle(light, facing, rounding, from_corner);
             }
             // Mean height; of a triangle cut by the horizon, the mean of what is above it as if spread evenly.
             let height = if bottom >= 0.0 { first + (a + b) / 3.0 } else { 0.5 * top * top / (top - bottom) };
-            triangle(light, strength * facing, height, from_corner)
+            triangle(light, facing, height, from_corner)
         }
     }
 }
 
-/// What a triangle adds whose points are so high above the horizon on average; `emitted` is its strength times twice
-/// its area times the cosine there, times the distance.
+/// What a triangle adds whose points are so high above the horizon on average; `facing` is twice its area times the cosine
+/// there, times the distance, and positive.
 #[inline]
-fn triangle(light: &Light, emitted: f32, height: f32, from_corner: Vec3) -> f32 {
+fn triangle(light: &Light, facing: f32, height: f32, from_corner: Vec3) -> f32 {
+    let strength = luminance(light.colour);
     let to_centre = (light.a + light.b) / 3.0 - from_corner;
     // A quarter of the area keeps a receiver next to the light from an infinite weight.
     let d2 = to_centre.length_squared() + 0.125 * light.c.length();
-    positive(emitted * 0.5 * height / (d2 * d2))
+    let value = positive(strength * 0.5 * facing * height / (d2 * d2));
+    // A corner at the receiver alone above the horizon: too little for f32 on average, and yet the corner adds something.
+    if strength > 0.0 { value.max(f32::MIN_POSITIVE) } else { 0.0 }
 }
 
 /// 0 for NaN, which a receiver exactly on a light gives; a receiver so near that f32 overflows gets the greatest
