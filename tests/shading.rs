@@ -13,13 +13,19 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
+/// Within `[low, high)`. (Proptest's own ranges of f32 fail an assertion of theirs once in a million.)
+fn within(low: f32, high: f32) -> impl Strategy<Value = f32> + Clone {
+    (0..1u32 << 24).prop_map(move |step| low + (high - low) * (step as f32 / (1u32 << 24) as f32))
+}
+
 /// 10 to a uniform power.
 fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> {
-    (low..high).prop_map(|power| 10f32.powf(power))
+    within(low, high).prop_map(|power| 10f32.powf(power))
 }
 
 fn direction() -> impl Strategy<Value = Vec3> {
-    let any = (-1.0..1.0f64, 0.0..TAU).prop_map(|(z, turn)| {
+    let any = (within(-1.0, 1.0), within(0.0, 1.0)).prop_map(|(z, turn)| {
+        let (z, turn) = (f64::from(z), f64::from(turn) * TAU);
         let r = (1.0 - z * z).sqrt();
         DVec3::new(r * turn.cos(), r * turn.sin(), z).as_vec3()
     });
@@ -32,7 +38,7 @@ fn direction() -> impl Strategy<Value = Vec3> {
 
 /// Within a cube of 2 m, in whole parts of a metre, or up to 1,000 km away.
 fn place() -> impl Strategy<Value = Vec3> {
-    let cube = || (-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0).prop_map(|(x, y, z)| Vec3::new(x, y, z));
+    let cube = || (within(-1.0, 1.0), within(-1.0, 1.0), within(-1.0, 1.0)).prop_map(|(x, y, z)| Vec3::new(x, y, z));
     let coarse = (-8i32..8, -8i32..8, -8i32..8).prop_map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32) * 0.25);
     let far = (cube(), magnitude(0.0, 6.0)).prop_map(|(at, scale)| at * scale);
     prop_oneof![2 => cube(), 2 => coarse, 2 => far, 1 => Just(Vec3::ZERO)]
@@ -41,13 +47,13 @@ fn place() -> impl Strategy<Value = Vec3> {
 /// 1e-6 to 1e12, and far beyond; some colours lack a channel.
 fn strength() -> impl Strategy<Value = Vec3> {
     let size = prop_oneof![6 => magnitude(-6.0, 12.0), 1 => magnitude(12.0, 37.0), 1 => Just(0.0f32)];
-    let channel = || prop_oneof![4 => 0.05f32..1.0, 1 => Just(0.0f32)];
+    let channel = || prop_oneof![4 => within(0.05, 1.0), 1 => Just(0.0f32)];
     (size, channel(), channel(), channel()).prop_map(|(size, r, g, b)| Vec3::new(r, g, b) * size)
 }
 
 fn shape() -> impl Strategy<Value = Shape> {
     let point = (place(), strength()).prop_map(|(position, intensity)| Shape::Point { position, intensity });
-    let spot = (place(), direction(), strength(), 0.0f32..1.0, magnitude(-7.0, 0.0)).prop_map(
+    let spot = (place(), direction(), strength(), within(0.0, 1.0), magnitude(-7.0, 0.0)).prop_map(
         |(position, axis, intensity, cos_outer, width)| {
             let cos_outer = cos_outer.min(1.0 - f32::EPSILON);
             let cos_inner = (cos_outer + width).clamp(cos_outer + 0.5 * f32::EPSILON, 1.0);
@@ -92,9 +98,9 @@ fn on_light(shape: &Shape, [u, v]: [f32; 2]) -> Vec3 {
 fn posed() -> impl Strategy<Value = (Shape, Receiver, [f32; 2])> {
     let number = || {
         let ends = vec![0.0f32, 1e-30, 1e-7, 0.5, 1.0 - 0.5 * f32::EPSILON];
-        prop_oneof![4 => 0.0f32..1.0, 1 => prop::sample::select(ends)]
+        prop_oneof![4 => within(0.0, 1.0), 1 => prop::sample::select(ends)]
     };
-    let albedo = prop_oneof![3 => 0.0f32..1.0, 1 => Just(1.0f32), 1 => Just(0.0f32)];
+    let albedo = prop_oneof![3 => within(0.0, 1.0), 1 => Just(1.0f32), 1 => Just(0.0f32)];
     let numbers = ([number(), number()], [number(), number()]);
     (shape(), numbers, (direction(), direction()), magnitude(-6.0, 6.0), 0..6u32, albedo).prop_map(
         |(shape, (uv, foot), (away, turned), distance, way, albedo)| {
