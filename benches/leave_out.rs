@@ -1,12 +1,12 @@
 //! Does a feature that a scene does not use cost anything?
 //!
-//! `leave-out/SCENE` is the harness's CPU time over that of a kernel written here for this scene alone, with the same picks:
-//! `lamps-only` by one that knows point lights only, `plaza` by one without shadow rays, `downtown` by one
-//! without directional lights. It should lie within 0.97 and 1.03. Beside it, `leave-out-gain/SCENE` says what the harness
-//! with every feature takes over what it takes with those that the scene needs: what leaving out is worth.
+//! `leave-out/SCENE` is the harness's CPU time over that of a kernel written here for this scene alone, with the same
+//! picks: `lamps-only` by one that knows point lights only, `plaza` by one without shadow rays, `downtown` by one
+//! without directional lights. It should lie within 0.97 and 1.03. Beside it, `leave-out-gain/SCENE` says what the
+//! harness with every feature takes over what it takes with those that the scene needs: what leaving out is worth.
 //!
-//! Both are taken in turns within one run, so that the machine's mood cancels. The strategy is `power`, which spends least
-//! on choosing. For another: `CITYLIGHTS_BENCH_STRATEGY=uniform cargo bench --bench leave-out`.
+//! Both are taken in turns within one run, so that the machine's mood cancels. The strategy is `power`, which spends
+//! least on choosing. For another: `CITYLIGHTS_BENCH_STRATEGY=uniform cargo bench --bench leave-out`.
 
 mod common;
 

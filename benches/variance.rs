@@ -1,18 +1,18 @@
 //! How large is a strategy's error after one pass?
 //!
 //! `variance/SCENE/STRATEGY` is the mean squared error of one pass about the strategy's own mean, for an unbiased
-//! strategy; `mse/SCENE/STRATEGY` that about the reference, for a biased one. Both are relative: squares over the squared
-//! truth, as in relMSE. Absolute squares are those of a few pixels next to a lamp: their mean over 100 passes says
-//! nothing yet (of a `uniform` with four times the variance: +57 %, p = 0.63). A strategy that gives the same in every pass is left out: it has no variance, and criterion cannot use a
-//! quantity that never varies.
+//! strategy; `mse/SCENE/STRATEGY` that about the reference, for a biased one. Both are relative: squares over the
+//! squared truth, as in relMSE. Absolute squares are those of a few pixels next to a lamp: their mean over 100 passes
+//! says nothing yet (of a `uniform` with four times the variance: +57 %, p = 0.63). A strategy that gives the same in
+//! every pass is left out: it has no variance, and criterion cannot use a quantity that never varies.
 //!
 //! A sample is one pass, with the random numbers of the passes 0 to 99 in turn: the same set in every run and on every
 //! machine, so that two runs of the same code give the same figure to the last digit. Criterion prints numbers of
 //! iterations that follow from time; they decide nothing here.
 //!
 //! To compare a change: `cargo bench --bench variance -- --save-baseline before`, change it, `cargo bench --bench
-//! variance -- --baseline before`. To see that a worse estimator is found, set `CITYLIGHTS_BENCH_MUTANT=1` for the second:
-//! each pick of [`Mutant`]'s strategies is then kept with a chance of 1/4 only, and weighted four times.
+//! variance -- --baseline before`. To see that a worse estimator is found, set `CITYLIGHTS_BENCH_MUTANT=1` for the
+//! second: each pick of [`Mutant`]'s strategies is then kept with a chance of 1/4 only, and weighted four times.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Promise: what a strategy says of how often it picks each light is finite, covers every light that can add anything, and
-//! sums to the number of picks: by brute force over a city.
+//! Promise: what a strategy says of how often it picks each light is finite, covers every light that can add anything,
+//! and sums to the number of picks: by brute force over a city.
 
 #![cfg(all(feature = "measure", feature = "recipe"))]
 
@@ -120,9 +120,9 @@ fn expected_counts_cover_a_city_and_sum_to_the_picks() {
             .collect();
         let unreachable: usize = found.iter().map(|told| told.unreachable).sum();
         let off = |told: &Told| told.found - told.wanted;
-        // Where the number of picks is the same in each call, their mean is exact, and 1e-5 is held. Where it varies, even
-        // numbers leave an error of a few picks in all passes at a receiver; receivers are independent, so that their mean
-        // says more: 2e-5 of a pick for the light tree, 5e-5 for a tail that is dropped half of the time.
+        // Where the number of picks is the same in each call, their mean is exact, and 1e-5 is held. Where it varies,
+        // even numbers leave an error of a few picks in all passes at a receiver; receivers are independent, so that
+        // their mean says more: 2e-5 of a pick for the light tree, 5e-5 for a tail that is dropped half of the time.
         let steady = found.iter().filter(|told| !told.varies);
         let worst = steady.map(|told| off(told).abs() / told.wanted.max(1.0)).fold(0.0, f64::max);
         let varying = Moments::of(found.iter().filter(|told| told.varies).map(off).collect::<Vec<_>>());

@@ -1,4 +1,5 @@
-//! Points on triangle lights: every way gives the same light on average, and none shows where it takes over from another.
+//! Points on triangle lights: every way gives the same light on average, and none shows where it takes over from
+//! another.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! The light tree: no light lost, probabilities exact, degenerate sets of lights, the same tree on any number of threads.
+//! The light tree: no light lost, probabilities exact, degenerate sets of lights, the same tree on any number of
+//! threads.
 
 #![cfg(feature = "measure")]
 
@@ -82,7 +83,8 @@ fn many(count: usize, seed: u64) -> Vec<Shape> {
     lights
 }
 
-/// Receivers where weights are hardest to get right: on lights, at the same height, a hair off a wall, among the lights.
+/// Receivers where weights are hardest to get right: on lights, at the same height, a hair off a wall, among the
+/// lights.
 fn hard_receivers(lights: &[Shape], count: usize) -> Vec<Receiver> {
     let mut rng = Stream::keyed(&[4]);
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];

@@ -166,8 +166,8 @@ fn the_right_strategy_passes_everything() {
 
 #[test]
 fn a_right_strategy_fails_no_check_oftener_than_its_level() {
-    // 60 seeds at the 1 % level: more than 4 failures of one check have a chance of 3 in 10,000. Few draws at a receiver,
-    // so that rare lights are rare.
+    // 60 seeds at the 1 % level: more than 4 failures of one check have a chance of 3 in 10,000. Few draws at a
+    // receiver, so that rare lights are rare.
     let stage = stage(sixteen());
     for points in ["random", "sobol", "r2"] {
         let strategy = parse_from(MUTANTS, &format!("right:points={points}")).expect("a strategy");

@@ -1,5 +1,5 @@
-//! Wrong strategies of the harder kind: misuse of even numbers, of a frame, of reservoirs, of trees, of mixtures, of units;
-//! each is rejected by the check that is meant for it, and by the gate before a comparison.
+//! Wrong strategies of the harder kind: misuse of even numbers, of a frame, of reservoirs, of trees, of mixtures, of
+//! units; each is rejected by the check that is meant for it, and by the gate before a comparison.
 
 #![cfg(feature = "measure")]
 

@@ -417,8 +417,8 @@ fn nothing_occludes_on_the_plaza() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4_000, ..ProptestConfig::default() })]
 
-    /// Bytes are replaced, dropped and doubled, whole lines too, and numbers become extreme ones; whatever comes out is a
-    /// scene or an error.
+    /// Bytes are replaced, dropped and doubled, whole lines too, and numbers become extreme ones; whatever comes out is
+    /// a scene or an error.
     #[test]
     fn mutated_recipes_never_panic(
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0u8..10, any::<u8>()), 1..6),

@@ -47,6 +47,12 @@ fn stability(arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("citylights").expect("the binary").arg("stability").args(arguments).assert()
 }
 
+/// The header without the sign of a remark.
+fn header() -> String {
+    let text = String::from_utf8_lossy(VECTORS);
+    text.lines().next().expect("a header").trim_start_matches(['#', ' ']).to_owned()
+}
+
 /// A file of the header and these rows.
 fn file(rows: &str) -> tempfile::NamedTempFile {
     let file = tempfile::NamedTempFile::new().expect("a file");
@@ -65,6 +71,20 @@ fn the_table_of_a_file_shows_every_category_and_the_textbook() {
         });
     shown
         .stdout(contains("textbook, f32").and(contains("every error is within its limit")).and(contains("FAIL").not()));
+}
+
+#[test]
+fn a_header_may_be_a_remark_and_a_remark_may_speak_of_categories() {
+    let header = header();
+    for text in [
+        format!("{header}\n{ROW}"),
+        format!("# {header}\n{ROW}"),
+        format!("#{}\n{ROW}", header.replace(',', ", ")),
+        format!("# categories, all of them\n# category names stand first\n{ROW}"),
+        ROW.to_owned(),
+    ] {
+        assert_eq!(parse(text.as_bytes(), "file".as_ref()).expect("a right header").len(), 1, "{text}");
+    }
 }
 
 #[test]
@@ -106,6 +126,19 @@ fn a_malformed_file_is_refused_with_line_and_column() {
         (String::new(), ":1: `category`: column 1: there are no rows"),
     ] {
         let file = file(&rows);
+        let name = file.path().to_str().expect("a name");
+        stability(&["--vectors", name]).code(2).stdout("").stderr(contains(format!("{name}{said}")));
+    }
+    let header = header();
+    for (header, said) in [
+        (header.replace("ax,ay,az", "ax,az,ay"), ":1: `ay`: column 3: the header says `az`; `ay` is right"),
+        (format!("# {}", header.replace("nx,ny", "ny,nx")), ":1: `nx`: column 11: the header says `ny`; `nx` is right"),
+        (format!("#{header},remark"), ":1: column 16: the header goes on with `remark`; 15 columns are right"),
+        (header.replace(",irradiance", ""), ":1: `irradiance`: column 15: the header ends here, with 14 columns"),
+        (format!("{header}\n{ROW}\n# category,bx"), ":3: `ax`: column 2: the header says `bx`; `ax` is right"),
+    ] {
+        let file = tempfile::NamedTempFile::new().expect("a file");
+        std::fs::write(file.path(), format!("{header}\n{ROW}\n")).expect("written");
         let name = file.path().to_str().expect("a name");
         stability(&["--vectors", name]).code(2).stdout("").stderr(contains(format!("{name}{said}")));
     }

@@ -17,8 +17,8 @@ use common::{bits, image, stage_with};
 use glam::{DQuat, DVec3, Vec3};
 use std::path::Path;
 
-/// A street corner with every kind of surface and light, its places moved by `shift` and then, like all lengths, times `scale`;
-/// strengths times `scale^2`, so that the picture stays.
+/// A street corner with every kind of surface and light, its places moved by `shift` and then, like all lengths, times
+/// `scale`; strengths times `scale^2`, so that the picture stays.
 fn recipe(shift: DVec3, scale: f64) -> String {
     let place = |x: f64, y: f64, z: f64| {
         let p = (DVec3::new(x, y, z) + shift) * scale;
@@ -105,7 +105,8 @@ fn picture(stage: &Stage) -> Vec<(u32, f64)> {
     stage.receivers().iter().map(|at| (at.pixel, exact(stage, at, 64, 1).mean().element_sum())).collect()
 }
 
-/// The difference of two pictures' means, as a share, and the share of their common pixels that differ by more than 1 %.
+/// The difference of two pictures' means, as a share, and the share of their common pixels that differ by more than 1
+/// %.
 fn difference(a: &[(u32, f64)], b: &[(u32, f64)]) -> (f64, f64) {
     let mean = |picture: &[(u32, f64)]| Moments::of(picture.iter().map(|(_, light)| *light)).mean;
     let pairs: Vec<(f64, f64)> = a
@@ -141,7 +142,8 @@ fn a_recipe_written_a_thousand_kilometres_away_is_the_same_to_the_byte() {
 #[test]
 fn a_recipe_written_anywhere_changes_as_little_as_its_rounding() {
     let here = sorted(&whole(read(DVec3::ZERO, 1.0)));
-    // The origin is a multiple of 1 km: up to half of one is left in the coordinates, which are rounded to 30 micrometres.
+    // The origin is a multiple of 1 km: up to half of one is left in the coordinates, which are rounded to 30
+    // micrometres.
     let there = whole(read(DVec3::new(1e6 + 123.4, -1e6 - 432.1, 77.7), 1.0));
     assert!(there.scene().bounds().1.abs().max_element() > 400.0);
     let (mean, pixels) = difference(&here, &sorted(&there));
@@ -177,7 +179,8 @@ fn placed(mut parts: Parts, place: impl Fn(Vec3) -> Vec3) -> Parts {
     parts
 }
 
-/// A scene whose f32 coordinates have `far` m added, and the very same rounded scene brought back: its numbers are exact.
+/// A scene whose f32 coordinates have `far` m added, and the very same rounded scene brought back: its numbers are
+/// exact.
 fn baked(far: f64) -> [Stage; 2] {
     let add = |place: Vec3, far: f64| (place.as_dvec3() + far).as_vec3();
     let there = placed(read(DVec3::ZERO, 1.0).parts(), |place| add(place, far));

@@ -232,7 +232,8 @@ fn a_push_of_a_tenth_of_a_millimetre_fails_from_2_km_on() {
 
 #[test]
 fn a_slope_of_kilometres_does_not_shadow_itself() {
-    // Corners so far off are rounded, and so is every height over the slope: to millimetres, far above a push near the origin.
+    // Corners so far off are rounded, and so is every height over the slope: to millimetres, far above a push near the
+    // origin.
     let slope = |x: f32, y: f32| Vec3::new(x, y, 0.13 * x - 0.21 * y);
     let corners = [slope(-9_000.0, -7_000.0), slope(8_000.0, -6_000.0), slope(500.0, 9_500.0)];
     let mut parts = ground(12.0, vec![moon(Vec3::new(0.9, 0.1, 0.15), 1.0)]);
@@ -267,7 +268,8 @@ fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
         ]
         .map(|corners| Surface { corners, material: 0 })
     };
-    // Half a millimetre behind the poster, that is before the wall, there is a lamp and a lit panel that shines at the poster.
+    // Half a millimetre behind the poster, that is before the wall, there is a lamp and a lit panel that shines at the
+    // poster.
     let mut lights = vec![point(Vec3::new(0.1, -5.0, 2.5), 100.0), point(Vec3::new(0.2, -0.000_5, 2.1), 100.0)];
     lights.extend(panel(Vec3::new(-0.2, -0.000_5, 1.8), Vec3::X * 0.3, Vec3::Z * 0.3, 10.0));
     let mut parts = ground(12.0, lights);
@@ -298,8 +300,8 @@ fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
 
 #[test]
 fn rays_along_an_axis_beside_a_slab_are_not_lost() {
-    // A sliver 2e-6 m wide at the origin, seen along an axis from far away: with the library's own inverse direction the
-    // ray leaves the sliver's box, 2e-7 m beside it, after a metre or two.
+    // A sliver 2e-6 m wide at the origin, seen along an axis from far away: with the library's own inverse direction
+    // the ray leaves the sliver's box, 2e-7 m beside it, after a metre or two.
     for axis in 0..3 {
         for sign in [1.0f32, -1.0] {
             let mut direction = Vec3::ZERO;

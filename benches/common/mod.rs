@@ -146,8 +146,8 @@ impl<T, U, A: FnMut() -> T, B: FnMut() -> U> Duel<A, B> {
         Self { ours, other, samples: Vec::new() }
     }
 
-    /// Runs it as a benchmark, two turns an iteration. A sample is one sum of CPU times over the other, from turns whose
-    /// order alternates: what slows the machine down slows both.
+    /// Runs it as a benchmark, two turns an iteration. A sample is one sum of CPU times over the other, from turns
+    /// whose order alternates: what slows the machine down slows both.
     pub(crate) fn bench(&mut self, group: &mut BenchmarkGroup<'_, Reported>, name: &str) {
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|iterations| {

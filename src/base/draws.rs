@@ -1,9 +1,9 @@
 //! Which numbers does a sample get: independent ones, or ones spread evenly over a pixel's passes?
 //!
 //! Each number alone is uniform and each sample alone unbiased, whatever the [`Points`]: sequences are rotated or
-//! scrambled anew for each run and pixel. Spread evenly, the numbers of many passes leave no gaps, so that their mean is
-//! more certain; a single pass gains nothing. Passes of one run and pixel are then no longer independent of one another:
-//! whoever needs independent estimates takes several runs.
+//! scrambled anew for each run and pixel. Spread evenly, the numbers of many passes leave no gaps, so that their mean
+//! is more certain; a single pass gains nothing. Passes of one run and pixel are then no longer independent of one
+//! another: whoever needs independent estimates takes several runs.
 
 use super::random::{RunKey, Stream, hash};
 
@@ -15,8 +15,8 @@ pub enum Points {
     Random,
     /// Owen-scrambled Sobol points (Burley, JCGT 9(4), 2020).
     Sobol,
-    /// Multiples of irrational numbers, rotated (Cranley and Patterson, SIAM J. Numer. Anal. 13(6), 1976): of the golden
-    /// ratio for choices, of the powers of the plastic number for points on lights (Roberts' R2, 2018).
+    /// Multiples of irrational numbers, rotated (Cranley and Patterson, SIAM J. Numer. Anal. 13(6), 1976): of the
+    /// golden ratio for choices, of the powers of the plastic number for points on lights (Roberts' R2, 2018).
     R2,
 }
 
@@ -72,8 +72,8 @@ pub struct Draws {
 impl Draws {
     /// The `j`-th of the `of` choices that this call makes, as 64 bits: enough to choose among many lights.
     ///
-    /// Over a pixel's passes all its choices are one sequence. So they may be used for terms that are added or for candidates
-    /// of one choice; two numbers that are to span a plane must not both come from here.
+    /// Over a pixel's passes all its choices are one sequence. So they may be used for terms that are added or for
+    /// candidates of one choice; two numbers that are to span a plane must not both come from here.
     #[inline]
     pub fn choice_bits(&mut self, j: u32, of: u32) -> u64 {
         let index = self.index * u64::from(of) + u64::from(j);
@@ -115,8 +115,8 @@ impl Draws {
         }
     }
 
-    /// A point in `[0, 1)^2` for what `name` names in this call: it depends on no other draw, so that leaving others out
-    /// does not change it. As a place, a name must not be that of a [`point`](Self::point).
+    /// A point in `[0, 1)^2` for what `name` names in this call: it depends on no other draw, so that leaving others
+    /// out does not change it. As a place, a name must not be that of a [`point`](Self::point).
     #[inline]
     pub fn point_of(&mut self, name: u32) -> [f32; 2] {
         match self.of.points {
@@ -146,8 +146,8 @@ impl Draws {
     }
 }
 
-/// A coordinate of an Owen-scrambled Sobol point. The library's sequence ends after 2^16 points: each such block is scrambled
-/// anew.
+/// A coordinate of an Owen-scrambled Sobol point. The library's sequence ends after 2^16 points: each such block is
+/// scrambled anew.
 fn sobol(index: u64, dimension: u32, name: u64) -> f32 {
     sobol_burley::sample((index & 0xffff) as u32, dimension, hash(&[name, index >> 16]) as u32)
 }

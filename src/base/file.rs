@@ -6,8 +6,8 @@ use std::path::Path;
 
 /// Writes `bytes` to `path`, replacing what was there.
 ///
-/// The bytes go to a hidden file in the same folder first, which then takes the name: a reader, or a run that dies half-way,
-/// never sees a part. Errors name `path`.
+/// The bytes go to a hidden file in the same folder first, which then takes the name: a reader, or a run that dies
+/// half-way, never sees a part. Errors name `path`.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let Some(name) = path.file_name() else {
         return Err(Error::Invalid(format!("cannot write `{}`: it names no file", path.display())));

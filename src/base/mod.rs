@@ -1,4 +1,5 @@
-//! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles, statistics, colour, files, errors.
+//! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
+//! statistics, colour, files, errors.
 
 pub mod colour;
 pub mod discrete;

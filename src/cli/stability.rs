@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Judge solid angle and irradiance by a CSV file of exact values instead: rows of category,ax,ay,az,bx,by,bz,cx,cy,cz,
-    /// nx,ny,nz,solid_angle,irradiance
+    /// Judge solid angle and irradiance by a CSV file of exact values instead: rows of
+    /// category,ax,ay,az,bx,by,bz,cx,cy,cz, nx,ny,nz,solid_angle,irradiance
     #[arg(long, value_name = "FILE")]
     vectors: Option<PathBuf>,
 }

@@ -31,7 +31,8 @@ pub(super) struct Arguments {
     /// Pixels across and down, instead of the recipes'
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     resolution: Option<(u32, u32)>,
-    /// Receivers drawn by area of street and facade, for what needs no rays (`strategies`), or of all there is (`offsets`)
+    /// Receivers drawn by area of street and facade, for what needs no rays (`strategies`), or of all there is
+    /// (`offsets`)
     #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     receivers: u32,
     /// Receivers that errors are taken over

@@ -10,7 +10,8 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The bytes of an EXR file with 32-bit channels R, G and B, losslessly compressed; the same picture gives the same bytes.
+/// The bytes of an EXR file with 32-bit channels R, G and B, losslessly compressed; the same picture gives the same
+/// bytes.
 ///
 /// NaN and infinite components are kept.
 pub fn encode(picture: &Picture) -> Result<Vec<u8>> {
@@ -31,7 +32,8 @@ pub fn encode(picture: &Picture) -> Result<Vec<u8>> {
 
 /// Reads the R, G and B channels of an EXR file (its first layer that has them; 16-bit floats are widened).
 ///
-/// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged or without these channels is [`Error::Input`].
+/// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged or without these channels is
+/// [`Error::Input`].
 pub fn read(path: &Path) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
     let image = ::exr::prelude::read()

@@ -58,8 +58,8 @@ impl Format {
 
 /// Writes `picture` in the format that the extension of `path` names, whole or not at all.
 ///
-/// `exposure` (display units per unit of the picture) is for PNG alone: EXR keeps the numbers as they are. Gives the number of
-/// pixels that are not finite: magenta in a PNG, kept in an EXR.
+/// `exposure` (display units per unit of the picture) is for PNG alone: EXR keeps the numbers as they are. Gives the
+/// number of pixels that are not finite: magenta in a PNG, kept in an EXR.
 pub fn write(path: &Path, picture: &Picture, exposure: f32) -> Result<usize> {
     let bytes = match Format::of(path)? {
         Format::Png => png::encode(picture, exposure)?,

@@ -9,7 +9,8 @@ use ::image::{ExtendedColorType, ImageEncoder};
 /// What a pixel that is not finite becomes: a colour that no lamp has.
 const MAGENTA: [u8; 3] = [255, 0, 255];
 
-/// The bytes of a PNG file: `exposure` times the picture, clamped to `[0, 1]`, through the sRGB curve, rounded to 8 bits.
+/// The bytes of a PNG file: `exposure` times the picture, clamped to `[0, 1]`, through the sRGB curve, rounded to 8
+/// bits.
 ///
 /// A pixel with a component that is NaN or infinite becomes magenta. The same picture gives the same bytes.
 pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {

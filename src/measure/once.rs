@@ -22,9 +22,11 @@ pub(super) struct Once<'a> {
 }
 
 impl Once<'_> {
-    /// Builds the strategy and goes through `budgets`, ascending numbers of passes, with a row for each; gives the last image.
+    /// Builds the strategy and goes through `budgets`, ascending numbers of passes, with a row for each; gives the last
+    /// image.
     ///
-    /// A strategy that cannot serve the scene gets one row that says so, and no image. `each` may end the run by failing.
+    /// A strategy that cannot serve the scene gets one row that says so, and no image. `each` may end the run by
+    /// failing.
     pub(super) fn through(
         &self,
         budgets: &[u32],

@@ -142,8 +142,9 @@ impl Pilot {
 
     /// Least relMSE that is to be expected after so many passes: it says how good a reference must be.
     ///
-    /// Numbers that are spread over a pixel's passes make it fall faster than 1/n. Seen: 4 to 5 times lower than that after
-    /// 64 passes, where most lights are seen; the square root of what they add to the pilot's passes gives 4 there.
+    /// Numbers that are spread over a pixel's passes make it fall faster than 1/n. Seen: 4 to 5 times lower than that
+    /// after 64 passes, where most lights are seen; the square root of what they add to the pilot's passes gives 4
+    /// there.
     pub fn expected_rel_mse(&self, passes: u32) -> f64 {
         let passes = f64::from(passes.max(1));
         let spread = if self.spread { (passes / f64::from(PASSES)).max(1.0).sqrt() } else { 1.0 };

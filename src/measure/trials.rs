@@ -1,7 +1,7 @@
 //! How good is each strategy at one budget? Independent runs of all of them, interleaved, held in memory.
 //!
-//! What an experiment needs of a comparison: no ladder of budgets, no rows on disk. Each run has a thread to itself, and a
-//! strategy that builds on several threads builds on that one: its clock then sees all of the set-up.
+//! What an experiment needs of a comparison: no ladder of budgets, no rows on disk. Each run has a thread to itself,
+//! and a strategy that builds on several threads builds on that one: its clock then sees all of the set-up.
 
 use super::clock::timed;
 use super::errors::Truth;
@@ -83,7 +83,8 @@ impl Trials<'_> {
         Ok(strategies.iter().enumerate().map(summary).collect())
     }
 
-    /// CPU seconds of the state that a strategy draws anew for each pass, whatever the number of receivers; 0 of one that has none.
+    /// CPU seconds of the state that a strategy draws anew for each pass, whatever the number of receivers; 0 of one
+    /// that has none.
     ///
     /// A run over few receivers pays for it as often as one over a whole frame.
     pub fn pass_state_s(&self, strategy: &Configured) -> Result<f64> {
@@ -148,7 +149,8 @@ fn alone() -> Result<rayon::ThreadPool> {
     pool.map_err(|e| Error::Invalid(format!("no thread could be started: {e}")))
 }
 
-/// Puts runs in a seeded random order (Fisher and Yates), so that no strategy runs while the machine is at its slowest throughout.
+/// Puts runs in a seeded random order (Fisher and Yates), so that no strategy runs while the machine is at its slowest
+/// throughout.
 pub(super) fn shuffle<T>(units: &mut [T], seed: u64) {
     let mut rng = Stream::keyed(&[seed, u64::from_le_bytes(*b"in order")]);
     for i in (1..units.len()).rev() {

@@ -1,9 +1,9 @@
 //! The raw facts of a comparison, as they lie on disk: which values, in which units, in which schema.
 //!
-//! A result folder holds `run.json` (a [`RunRecord`]: what was run, where, and what needs all runs together) and `runs.csv`
-//! (one [`Row`] per strategy, run and budget). Tables, pages and plots are made again from these two alone. Numbers are in base
-//! units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A [`study`]'s folder holds `study.json` and
-//! a CSV file a table in the same manner.
+//! A result folder holds `run.json` (a [`RunRecord`]: what was run, where, and what needs all runs together) and
+//! `runs.csv` (one [`Row`] per strategy, run and budget). Tables, pages and plots are made again from these two alone.
+//! Numbers are in base units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A
+//! [`study`]'s folder holds `study.json` and a CSV file a table in the same manner.
 
 mod number;
 pub mod row;

@@ -1,4 +1,5 @@
-//! Floating-point numbers in JSON, which knows neither infinity nor NaN: these become the words `inf`, `-inf` and `nan`.
+//! Floating-point numbers in JSON, which knows neither infinity nor NaN: these become the words `inf`, `-inf` and
+//! `nan`.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

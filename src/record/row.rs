@@ -89,7 +89,8 @@ impl Row {
     /// The row's fields in the order of [`COLUMNS`]. Line breaks in texts become spaces: a row is one line.
     pub(super) fn fields(&self) -> [String; COLUMNS.len()] {
         let text = |s: &str| s.replace(['\r', '\n'], " ");
-        // `{:?}` is the shortest text that reads back as the same number; it turns to exponents where `{}` would write 300 zeros.
+        // `{:?}` is the shortest text that reads back as the same number; it turns to exponents where `{}` would write
+        // 300 zeros.
         let number = |v: f64| if self.error.is_some() && v.is_nan() { String::new() } else { format!("{v:?}") };
         let [d0, d1, d2, d3, d4, d5, d6, d7, d8, d9] = self.deciles.map(number);
         [

@@ -23,8 +23,8 @@ pub struct RunRecord {
     pub schema: u32,
     /// The command line.
     pub command: String,
-    /// All that decides the rows, in canonical form: content of the scenes, strategies, budgets, options. An interrupted
-    /// run is resumed only by one that asks for the same.
+    /// All that decides the rows, in canonical form: content of the scenes, strategies, budgets, options. An
+    /// interrupted run is resumed only by one that asks for the same.
     pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,

@@ -82,8 +82,8 @@ pub struct Rows {
 
 /// Reads `runs.csv` from `folder`.
 ///
-/// A last line without its line break is an interrupted write: it is left out and reported in [`Rows::cut_short`]. Anything
-/// else that is not a row is an error that names file, line and column.
+/// A last line without its line break is an interrupted write: it is left out and reported in [`Rows::cut_short`].
+/// Anything else that is not a row is an error that names file, line and column.
 pub fn read_rows(folder: &Path) -> Result<Rows> {
     let path = folder.join(ROWS_FILE);
     let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
@@ -141,8 +141,8 @@ impl RowWriter {
         Ok(writer)
     }
 
-    /// Goes on with the `runs.csv` of an interrupted run and gives the rows of it that `keep` accepts; the others, which
-    /// will be made again, and a line cut short are removed.
+    /// Goes on with the `runs.csv` of an interrupted run and gives the rows of it that `keep` accepts; the others,
+    /// which will be made again, and a line cut short are removed.
     pub fn resume(folder: &Path, keep: impl Fn(&Row) -> bool) -> Result<(Self, Vec<Row>)> {
         let path = folder.join(ROWS_FILE);
         let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;

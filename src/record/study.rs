@@ -1,8 +1,8 @@
 //! What a finished study is: what was asked, by what, where, and tables of typed cells.
 //!
-//! A study's folder holds `study.json` (a [`StudyRecord`]: all but the cells) and `<table>.csv` for each of its tables. Like the
-//! rows of a comparison these are in base units, with the unit in the column's name; the page and the plots are made again
-//! from them alone.
+//! A study's folder holds `study.json` (a [`StudyRecord`]: all but the cells) and `<table>.csv` for each of its tables.
+//! Like the rows of a comparison these are in base units, with the unit in the column's name; the page and the plots
+//! are made again from them alone.
 
 use super::{Machine, number};
 use serde::{Deserialize, Serialize};
@@ -148,7 +148,8 @@ pub struct PlotRecord {
     pub x: AxisRecord,
     /// The vertical axis.
     pub y: AxisRecord,
-    /// Further columns along the vertical axis, each with what it adds to a curve's name: drawn dashed, with hollow marks.
+    /// Further columns along the vertical axis, each with what it adds to a curve's name: drawn dashed, with hollow
+    /// marks.
     pub beside: Vec<(String, String)>,
     /// Values of `series` that are biased: drawn dashed, with hollow marks.
     pub biased: Vec<String>,

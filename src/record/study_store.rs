@@ -1,4 +1,5 @@
-//! Where studies lie: a folder with `study.json` and a CSV file a table, whose rows are there as soon as they are known.
+//! Where studies lie: a folder with `study.json` and a CSV file a table, whose rows are there as soon as they are
+//! known.
 
 use super::store::{self, input, line};
 use super::study::{Cell, Cells, Format, PictureRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord};
@@ -87,8 +88,8 @@ pub fn is_study(folder: &Path) -> bool {
     folder.join(STUDY_FILE).exists()
 }
 
-/// Reads the study in `folder`. A last line of a table without its line break is an interrupted write and left out; anything
-/// else that is not a row is an error that names file, line and column.
+/// Reads the study in `folder`. A last line of a table without its line break is an interrupted write and left out;
+/// anything else that is not a row is an error that names file, line and column.
 pub fn read_study(folder: &Path) -> Result<Study> {
     let record: StudyRecord = store::read_record(&folder.join(STUDY_FILE), STUDY_SCHEMA)?;
     let rows =

@@ -3,7 +3,8 @@
 use super::number;
 use serde::{Deserialize, Serialize};
 
-/// A mean over runs and half the width of its 95 % Student-t interval, in the same unit; the half is infinite for a single run.
+/// A mean over runs and half the width of its 95 % Student-t interval, in the same unit; the half is infinite for a
+/// single run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Interval {
@@ -36,7 +37,8 @@ pub enum Claim {
 
 /// Work counted in a separate pass of the same code; counts carry over between machines, times do not.
 ///
-/// Each pick ends in exactly one of the three early outs or in a shadow ray, if its contribution is not zero for another reason.
+/// Each pick ends in exactly one of the three early outs or in a shadow ray, if its contribution is not zero for
+/// another reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counts {
@@ -109,10 +111,11 @@ pub struct Summary {
     /// The bias of the image's mean that a 5 % test would find with 80 % power, as a share of it.
     #[serde(with = "number")]
     pub detectable_bias: f64,
-    /// V: variance in units of relMSE times CPU seconds, set-up left out, both at the largest budget ([`passes`](Self::passes)).
+    /// V: variance in units of relMSE times CPU seconds, set-up left out, both at the largest budget
+    /// ([`passes`](Self::passes)).
     ///
-    /// It belongs to that budget: arriving at a receiver is paid once per block of passes, so that CPU time is affine in the
-    /// passes and V is not the same at every budget.
+    /// It belongs to that budget: arriving at a receiver is paid once per block of passes, so that CPU time is affine
+    /// in the passes and V is not the same at every budget.
     #[serde(with = "number")]
     pub variance_seconds: f64,
     /// Error per sample, relMSE times passes, over that of the oracle at the receivers that this was run on; none where

@@ -13,8 +13,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// At most this many (receiver, pass) pairs are sampled at once: where lists are short and suddenly long, a buffer stays
-/// within CALLS times the longest.
+/// At most this many (receiver, pass) pairs are sampled at once: where lists are short and suddenly long, a buffer
+/// stays within CALLS times the longest.
 const CALLS: usize = 512;
 
 /// What passes are run with.

@@ -1,7 +1,7 @@
 //! Curves as a picture: what any plot is drawn with.
 //!
-//! The file names fonts and holds none; whoever shows it chooses them. Coordinates are whole pixels, so that the same rows
-//! give the same bytes everywhere.
+//! The file names fonts and holds none; whoever shows it chooses them. Coordinates are whole pixels, so that the same
+//! rows give the same bytes everywhere.
 
 use super::mark::Mark;
 use crate::base::error::{Error, Result};

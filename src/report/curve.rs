@@ -26,8 +26,8 @@ impl Point {
 
 /// The rows of `scene` with numbers, by strategy, budget and run.
 ///
-/// Of several rows of the same strategy, budget and run only the last counts: an interrupted run that goes on measures its
-/// last unit again.
+/// Of several rows of the same strategy, budget and run only the last counts: an interrupted run that goes on measures
+/// its last unit again.
 pub(super) fn rows_of<'a>(rows: &'a [Row], scene: &str) -> Vec<&'a Row> {
     let of_scene = rows.iter().filter(|row| row.scene == scene);
     let last: BTreeMap<_, &Row> = of_scene.map(|row| ((&row.strategy, row.passes, row.run), row)).collect();

@@ -1,12 +1,13 @@
-//! What follows from the recorded figures of a strategy: how soon it gets somewhere, and where it stands among the others.
+//! What follows from the recorded figures of a strategy: how soon it gets somewhere, and where it stands among the
+//! others.
 
 use super::curve::{Curve, Point};
 use crate::base::statistics::{normal_quantile, sidak, student_quantile};
 use crate::record::{Claim, Interval, RunRecord, SceneRecord, Summary};
 use std::cmp::Ordering;
 
-/// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative; NaN where
-/// it is not known.
+/// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative;
+/// NaN where it is not known.
 pub fn bias2(summary: &Summary) -> f64 {
     match summary.claim {
         // `max` would turn NaN, a bias not known, into 0.
@@ -31,8 +32,8 @@ pub(super) enum Arrival {
 
 /// When `curve`, the one of `summary`, gets to a relMSE of `error`.
 ///
-/// Read off the measured curve and not from V: CPU time is affine in the passes, so that V / error may lie below the time of
-/// the first pass, before which there is no image.
+/// Read off the measured curve and not from V: CPU time is affine in the passes, so that V / error may lie below the
+/// time of the first pass, before which there is no image.
 pub(super) fn time_to(summary: &Summary, curve: &Curve, error: f64) -> Arrival {
     let points = &curve.points;
     match points.iter().position(|point| point.error <= error) {
@@ -42,7 +43,8 @@ pub(super) fn time_to(summary: &Summary, curve: &Curve, error: f64) -> Arrival {
     }
 }
 
-/// The time of `error` on a straight line from `above` to `below` in the log-log plot; that of `below` where there is no such line.
+/// The time of `error` on a straight line from `above` to `below` in the log-log plot; that of `below` where there is
+/// no such line.
 fn between(above: &Point, below: &Point, error: f64) -> f64 {
     if !above.is_drawable() || !below.is_drawable() {
         return below.seconds;

@@ -35,7 +35,8 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// The look of the `nth` strategy that is neither floor nor ceiling: 35 differ. Floor and ceiling are grey and black.
+    /// The look of the `nth` strategy that is neither floor nor ceiling: 35 differ. Floor and ceiling are grey and
+    /// black.
     pub(super) fn new(claim: &Claim, nth: usize) -> Self {
         match claim {
             Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: SHAPES[1], hollow: false },

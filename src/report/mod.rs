@@ -1,7 +1,7 @@
 //! Tables, pages and plots from records alone: made again at any time, without measuring anything.
 //!
-//! [`report`] writes them into a result folder, [`check`] says whether they are what its raw rows say. The same records give the
-//! same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
+//! [`report`] writes them into a result folder, [`check`] says whether they are what its raw rows say. The same records
+//! give the same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
 
 mod chart;
 mod curve;
@@ -72,8 +72,8 @@ pub struct Section {
     pub body: String,
 }
 
-/// The sections of a result folder for `page`, in order: one a scene, or one for all of a study. What they point to is named
-/// relative to the page's folder where it lies in there.
+/// The sections of a result folder for `page`, in order: one a scene, or one for all of a study. What they point to is
+/// named relative to the page's folder where it lies in there.
 pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
     let seen = page.parent().and_then(|home| folder.strip_prefix(home).ok()).unwrap_or(folder);
     if is_study(folder) {

@@ -22,7 +22,8 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
     text
 }
 
-/// A scene in short, for [`splice`](super::splice::splice): what was measured, the plot, error against time, the command.
+/// A scene in short, for [`splice`](super::splice::splice): what was measured, the plot, error against time, the
+/// command.
 ///
 /// `plot` is the address of its plot as seen from the page.
 pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {

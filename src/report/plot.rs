@@ -7,10 +7,11 @@ use super::mark::Mark;
 use crate::base::error::Result;
 use crate::record::{Claim, Row, SceneRecord, Summary};
 
-/// The plot of a scene as SVG: relMSE over receivers against CPU seconds, set-up included, means over runs with 95 % intervals.
+/// The plot of a scene as SVG: relMSE over receivers against CPU seconds, set-up included, means over runs with 95 %
+/// intervals.
 ///
-/// Biased strategies are dashed and hollow. What a logarithmic axis cannot show (an error of exactly 0) is named under the legend.
-/// `rows` may hold other scenes too.
+/// Biased strategies are dashed and hollow. What a logarithmic axis cannot show (an error of exactly 0) is named under
+/// the legend. `rows` may hold other scenes too.
 pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
     let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
     summaries.sort_by(|a, b| figures::order(a, b));

@@ -65,7 +65,8 @@ pub(super) const WIDTH: usize = 140;
 const NAME_WIDTH: usize = 22;
 
 impl Sheet {
-    /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its reason.
+    /// The table of `columns` over `summaries`, in their order; a strategy that was not measured is a row with its
+    /// reason.
     pub(super) fn new(title: &str, summaries: &[&Summary], columns: &[Column], below: Vec<String>) -> Self {
         let lines = summaries.iter().map(|summary| {
             let cells =

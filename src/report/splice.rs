@@ -1,7 +1,7 @@
 //! Sections of a hand-written page that the tool keeps current.
 //!
-//! A section lies between `<!-- citylights:begin NAME -->` and `<!-- citylights:end NAME -->`, each on a line of its own;
-//! everything outside belongs to people and is not touched.
+//! A section lies between `<!-- citylights:begin NAME -->` and `<!-- citylights:end NAME -->`, each on a line of its
+//! own; everything outside belongs to people and is not touched.
 
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;

@@ -36,7 +36,8 @@ pub(super) fn page(study: &Study) -> String {
     text
 }
 
-/// A study for a page that people write; `folder` is the address of its folder as seen from there, with a slash at its end.
+/// A study for a page that people write; `folder` is the address of its folder as seen from there, with a slash at its
+/// end.
 pub(super) fn section(study: &Study, folder: &str) -> String {
     let record = &study.record;
     let mut text = body(study, 2, folder);

@@ -1,8 +1,8 @@
 //! Which strategy reaches which error how soon, in one scene: the tables for the terminal.
 //!
 //! Five tables: error against time (the answer), other measures of error, error by brightness, work, work of choosing.
-//! A column stands only where it can differ from row to row: no bias columns without biased strategies, no early outs that
-//! the scene cannot cause.
+//! A column stands only where it can differ from row to row: no bias columns without biased strategies, no early outs
+//! that the scene cannot cause.
 
 use super::curve::{Curve, rows_of};
 use super::figures::{self, Arrival, Balance};

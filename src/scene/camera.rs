@@ -53,7 +53,8 @@ impl Camera {
         Self { width, height, right, ..*self }
     }
 
-    /// The camera of a scene that was turned and moved: at `position`, looking along what `turn` makes of its directions.
+    /// The camera of a scene that was turned and moved: at `position`, looking along what `turn` makes of its
+    /// directions.
     pub fn turned(&self, position: Vec3, turn: DQuat) -> Self {
         Self { position, forward: turn * self.forward, right: turn * self.right, down: turn * self.down, ..*self }
     }

@@ -1,8 +1,8 @@
 //! How far does a light reach before it falls under the display's smallest step?
 //!
-//! The lecture's cut-off, written on the displayed value: a light is in range where its displayed contribution, with the
-//! receiver facing it and as bright as the scene's brightest material, is at least `T`; 0.5/255 for a linear display.
-//! Each light that is left out is invisible alone. Their sum is not: dropping them is a bias.
+//! The lecture's cut-off, written on the displayed value: a light is in range where its displayed contribution, with
+//! the receiver facing it and as bright as the scene's brightest material, is at least `T`; 0.5/255 for a linear
+//! display. Each light that is left out is invisible alone. Their sum is not: dropping them is a bias.
 
 use super::Scene;
 use super::light::{Kind, Light, LightId};

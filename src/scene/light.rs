@@ -108,8 +108,8 @@ impl From<Shape> for Light {
                 Self { colour: intensity, kind: Kind::Point as u32, position, ..blank }
             }
             Shape::Spot { position, axis, intensity, cos_inner, cos_outer } => {
-                // A checked scene has cones at least one step of f32 apart, which this leaves alone. The extension's own
-                // guard of 1e-3 would dim each cone narrower than 2.6 degrees.
+                // A checked scene has cones at least one step of f32 apart, which this leaves alone. The extension's
+                // own guard of 1e-3 would dim each cone narrower than 2.6 degrees.
                 let scale = 1.0 / (cos_inner - cos_outer).max(0.5 * f32::EPSILON);
                 Self {
                     colour: intensity,
@@ -159,7 +159,8 @@ impl Light {
         }
     }
 
-    /// Cone attenuation of a spot towards the unit direction `from_light`; 1 within the inner cone, 0 outside the outer.
+    /// Cone attenuation of a spot towards the unit direction `from_light`; 1 within the inner cone, 0 outside the
+    /// outer.
     #[inline]
     pub(crate) fn cone(&self, from_light: Vec3) -> f32 {
         let ramp = (self.a.dot(from_light) * self.b.x + self.b.y).clamp(0.0, 1.0);

@@ -89,7 +89,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Checks the parts. Zero-area triangles are dropped, counted in a note; anything not finite or negative is refused.
+    /// Checks the parts. Zero-area triangles are dropped, counted in a note; anything not finite or negative is
+    /// refused.
     pub fn new(parts: Parts) -> Result<Self> {
         let Parts { name, seed, origin, lights, groups, surfaces, materials, camera, ev100, mut notes } = parts;
         for (i, material) in materials.iter().enumerate() {

@@ -37,8 +37,8 @@ impl Needs {
 /// scene is then the inside of a convex shape, open or closed. In f64, where these products of f32 numbers keep their
 /// sign but for nearly coplanar points; those count as occluding unless exactly 0.
 ///
-/// Almost any triangle of a city settles it; planes are tried in scattered order, since the ground, which does not, fills
-/// whole runs of the list. Where none settles it and there are too many to try, the answer is the safe one.
+/// Almost any triangle of a city settles it; planes are tried in scattered order, since the ground, which does not,
+/// fills whole runs of the list. Where none settles it and there are too many to try, the answer is the safe one.
 fn can_occlude(scene: &Scene) -> bool {
     let emitters = scene.lights().iter().filter(|light| light.kind() == Kind::Triangle).map(Light::corners);
     let planes: Vec<[Vec3; 3]> = scene.surfaces().iter().map(|surface| surface.corners).chain(emitters).collect();

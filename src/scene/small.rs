@@ -1,7 +1,7 @@
 //! Scenes small enough to reason about: what `verify` looks at where no scene is named, and what tests are made of.
 //!
-//! A ground, a few boxes, a camera above, and the light tables on which strategies go wrong: none, one, all the same, all in
-//! one place, all behind the horizon, one that outshines the rest by twelve orders of magnitude.
+//! A ground, a few boxes, a camera above, and the light tables on which strategies go wrong: none, one, all the same,
+//! all in one place, all behind the horizon, one that outshines the rest by twelve orders of magnitude.
 
 use super::camera::Camera;
 use super::light::Shape;

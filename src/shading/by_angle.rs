@@ -22,12 +22,15 @@ pub(super) fn by_angle(light: &Light, uv: [f32; 2], at: &Receiver, projected: bo
     let first = light.position.as_dvec3() - at.position.as_dvec3();
     let seen = Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()]);
     let (normal, uv) = (at.normal.as_dvec3(), uv.map(f64::from));
-    if projected {
+    let drawn = if projected {
         let map = Projected::new(&seen, normal)?;
-        Some(Drawn { to_light: seen.point(map.sample(uv)), irradiance: map.irradiance() })
+        Drawn { to_light: seen.point(map.sample(uv)), irradiance: map.irradiance() }
     } else {
         let map = SolidAngle::new(&seen)?;
         let to_light = seen.point(map.sample(uv));
-        Some(Drawn { to_light, irradiance: map.solid_angle() * normal.dot(to_light) / to_light.length() })
-    }
+        Drawn { to_light, irradiance: map.solid_angle() * normal.dot(to_light) / to_light.length() }
+    };
+    // A receiver on an edge: a point that lies at the receiver has no direction.
+    let distance2 = drawn.to_light.length_squared();
+    (distance2 > 0.0 && distance2.is_finite()).then_some(drawn)
 }

@@ -33,10 +33,10 @@ pub enum EarlyOut {
 
 /// What the point `uv` (in `[0, 1)^2`, used by triangles) of a light adds at a receiver, with nothing in between.
 ///
-/// `by` says which point of a triangle that is. `KINDS` is the set of [`Kind::bit`]s that the scene holds: code for others is not compiled in.
-/// Directional irradiance `E` gives `albedo/pi E (n.w)`; a point `albedo/pi I (n.w) / d^2`; a triangle of area A
-/// `albedo/pi L A (n.w)(n_l.-w) / d^2` (Kajiya 1986 with a Lambertian emitter) by area, `albedo/pi L S (n.w)` by its solid
-/// angle S, `albedo/pi E` by its irradiance E.
+/// `by` says which point of a triangle that is. `KINDS` is the set of [`Kind::bit`]s that the scene holds: code for
+/// others is not compiled in. Directional irradiance `E` gives `albedo/pi E (n.w)`; a point `albedo/pi I (n.w) / d^2`;
+/// a triangle of area A `albedo/pi L A (n.w)(n_l.-w) / d^2` (Kajiya 1986 with a Lambertian emitter) by area, `albedo/pi
+/// L S (n.w)` by its solid angle S, `albedo/pi E` by its irradiance E.
 #[inline(always)]
 pub fn contribution<const KINDS: u8>(
     by: LightSampling,

@@ -1,7 +1,7 @@
 //! Do solid angle and irradiance agree with a file of exact values?
 //!
 //! Each row holds a triangle seen from the origin, the receiver's normal there, and the exact solid angle and irradiance; see
-//! [`COLUMNS`]. Rows are judged by category.
+//! [`COLUMNS`]. A header, with or without `#` before it, has these in this order. Rows are judged by category.
 
 use super::tally::{Finding, Tally, relative};
 use super::textbook;
@@ -88,17 +88,34 @@ pub fn parse(text: &[u8], file: &Path) -> Result<Vec<Vector>> {
             wrong(line, at, "this is no text; a CSV file in UTF-8 is right")
         })?;
         let row = row.trim_start_matches('\u{feff}').trim();
-        let is_header = vectors.is_empty() && row.split(',').next() == Some(COLUMNS[0]);
-        if row.is_empty() || row.starts_with('#') || is_header {
+        let remark = row.starts_with('#');
+        let fields: Vec<&str> = row.trim_start_matches('#').split(',').map(str::trim).collect();
+        if fields[0] == COLUMNS[0] && (remark || vectors.is_empty()) {
+            check_header(&fields).map_err(|(at, message)| wrong(line, at, &message))?;
             continue;
         }
-        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+        if row.is_empty() || remark {
+            continue;
+        }
         vectors.push(Vector::of(&fields).map_err(|(at, message)| wrong(line, at, &message))?);
     }
     if vectors.is_empty() {
         return Err(wrong(1, 0, &format!("there are no rows; at least one is right, of {}", COLUMNS.join(","))));
     }
     Ok(vectors)
+}
+
+/// Whether a header, also one that is a remark, has the right columns; else the first (from 0) that has not.
+fn check_header(fields: &[&str]) -> std::result::Result<(), (usize, String)> {
+    let Some(at) = (0..fields.len().max(COLUMNS.len())).find(|at| fields.get(*at) != COLUMNS.get(*at)) else {
+        return Ok(());
+    };
+    let what = match (fields.get(at), COLUMNS.get(at)) {
+        (Some(found), Some(right)) => format!("the header says `{found}`; `{right}` is right"),
+        (Some(found), None) => format!("the header goes on with `{found}`; {} columns are right", COLUMNS.len()),
+        (None, _) => format!("the header ends here, with {at} columns; {} are right", COLUMNS.len()),
+    };
+    Err((at, format!("{what}, of {}", COLUMNS.join(","))))
 }
 
 impl Vector {

@@ -32,8 +32,9 @@ impl Strategy for All {
     }
 }
 
-/// The lights to take, in table order, and whether each has an extent. Sums come out the same to the last bit whether or
-/// not useless lights were left out: the order is kept, and a light's points depend on nothing but the light and the pass.
+/// The lights to take, in table order, and whether each has an extent. Sums come out the same to the last bit whether
+/// or not useless lights were left out: the order is kept, and a light's points depend on nothing but the light and the
+/// pass.
 pub struct Lights(Vec<(LightId, bool)>);
 
 impl LightSampler for Lights {

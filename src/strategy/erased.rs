@@ -3,8 +3,8 @@
 //! The one virtual call is made once a tile, so that it costs nothing; shading then runs over the picks, compiled for
 //! what the scene needs and not once more for each strategy.
 //!
-//! A [`LightSampler`] serves any passes. A [`FrameSampler`] draws state anew for each pass or looks at the whole frame, and
-//! makes a sampler for each pass.
+//! A [`LightSampler`] serves any passes. A [`FrameSampler`] draws state anew for each pass or looks at the whole frame,
+//! and makes a sampler for each pass.
 
 use super::tally::{Tally, Uncounted, Work};
 use super::{BuildContext, Info, LightSampler, Pick, Picks, Strategy};
@@ -93,7 +93,8 @@ pub trait Block: Send + Sync {
 
 /// What samples a sampler on one thread.
 pub trait Worker {
-    /// Fills `out` with the picks of receivers of the frame in passes of the block: all passes of one receiver together.
+    /// Fills `out` with the picks of receivers of the frame in passes of the block: all passes of one receiver
+    /// together.
     ///
     /// `extended` says whether any light has an extent, so that a point on it must be drawn.
     fn fill(&mut self, receivers: &[Receiver], passes: Range<u32>, extended: bool, out: &mut PickBuffer);

@@ -1,12 +1,13 @@
 //! The combination made unbiased: lights out of range keep an exactly accounted chance.
 //!
-//! Besides the weighted picks among the lights in range, `tail` draws over all lights. One that turns out to be in range
-//! is dropped, since the first part already stands for it; any other is weighted by its own probability. So each light is
-//! covered by exactly one of the two parts, and the sum of both is the whole.
+//! Besides the weighted picks among the lights in range, `tail` draws over all lights. One that turns out to be in
+//! range is dropped, since the first part already stands for it; any other is weighted by its own probability. So each
+//! light is covered by exactly one of the two parts, and the sum of both is the whole.
 //!
-//! The draws go by the influence radius r, not by flux (r^2). Out of range a light adds `T (r/d)^2`; over receivers spread
-//! in a plane the mean of its square is in proportion to r^2, so that the probability of least variance is in proportion
-//! to r: the second moment is `(sum r)^2` against `n sum r^2` for flux, the more so the more unequal the lights are.
+//! The draws go by the influence radius r, not by flux (r^2). Out of range a light adds `T (r/d)^2`; over receivers
+//! spread in a plane the mean of its square is in proportion to r^2, so that the probability of least variance is in
+//! proportion to r: the second moment is `(sum r)^2` against `n sum r^2` for flux, the more so the more unequal the
+//! lights are.
 
 use super::influence::Range;
 use super::parameters::Arguments;

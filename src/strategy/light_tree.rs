@@ -1,12 +1,13 @@
 //! Near and strong lights more often: a walk down a tree of clusters, each weighed at the receiver.
 //!
-//! At a receiver the heaviest clusters are opened first until there are `open` nodes of them, and each walk begins among those. A
-//! cluster that seems heavy from afar is thus looked into before it is believed, and one around the receiver is no longer
-//! one number: on `downtown` the variance of a pick falls to a fifth, and all passes at a receiver share the work.
+//! At a receiver the heaviest clusters are opened first until there are `open` nodes of them, and each walk begins
+//! among those. A cluster that seems heavy from afar is thus looked into before it is believed, and one around the
+//! receiver is no longer one number: on `downtown` the variance of a pick falls to a fifth, and all passes at a
+//! receiver share the work.
 //!
 //! `importance=box` weighs a cluster by what of its box lies above the receiver's horizon and above its emitters';
-//! `importance=classic` is the literature's weight, for comparison. `far` cuts walks short, `split` makes several where a
-//! cluster would be a bad guess, `mix` makes some of the picks by strength alone.
+//! `importance=classic` is the literature's weight, for comparison. `far` cuts walks short, `split` makes several where
+//! a cluster would be a bad guess, `mix` makes some of the picks by strength alone.
 
 use super::erased::AnySampler;
 use super::parameters::Arguments;
@@ -35,7 +36,8 @@ pub struct LightTree {
 struct Walks {
     /// Picks by the whole tree; of each cluster of a cut, if there is one.
     picks: u32,
-    /// Clusters less uniform than this are split before anything is drawn, each part to get picks of its own; 0 for none.
+    /// Clusters less uniform than this are split before anything is drawn, each part to get picks of its own; 0 for
+    /// none.
     split: f32,
     /// Most clusters of a cut.
     cut: u32,

@@ -1,16 +1,16 @@
-//! A cut through a binary tree of lights, each cluster standing for its lights through one of them: no chance once the tree
-//! is built, so no noise from pass to pass.
+//! A cut through a binary tree of lights, each cluster standing for its lights through one of them: no chance once the
+//! tree is built, so no noise from pass to pass.
 //!
-//! The tree is drawn once: a node's representative is that of one of its halves, by peak intensity. At a receiver, a cluster
-//! is worth what its representative adds, shadow ray included, times the cluster's peak intensity over its own. From the
-//! root, the cluster with the greatest bound on what it could add is replaced by its halves, until each bound is at most
-//! `error` of the running total (Weber's law: what the eye would not see) or there are `cut` clusters.
+//! The tree is drawn once: a node's representative is that of one of its halves, by peak intensity. At a receiver, a
+//! cluster is worth what its representative adds, shadow ray included, times the cluster's peak intensity over its own.
+//! From the root, the cluster with the greatest bound on what it could add is replaced by its halves, until each bound
+//! is at most `error` of the running total (Weber's law: what the eye would not see) or there are `cut` clusters.
 //!
-//! Where this differs from the source: the tree is that of [`light_tree`](super::light_tree), cut from the top by the surface
-//! area orientation heuristic, not paired from the bottom; triangles stand beside points, each through its centroid, and
-//! their emission bounds the cosine at the light; the bound on a cluster takes its cosine from the nearest distance and the
-//! highest point of its box; a cluster has the colour of its representative, where the source adds up colours; directional
-//! lights are in every cut.
+//! Where this differs from the source: the tree is that of [`light_tree`](super::light_tree), cut from the top by the
+//! surface area orientation heuristic, not paired from the bottom; triangles stand beside points, each through its
+//! centroid, and their emission bounds the cosine at the light; the bound on a cluster takes its cosine from the
+//! nearest distance and the highest point of its box; a cluster has the colour of its representative, where the source
+//! adds up colours; directional lights are in every cut.
 
 use super::parameters::Arguments;
 use super::tally::Tally;
@@ -192,7 +192,8 @@ impl LightSampler for Sampler {
 }
 
 impl Sampler {
-    /// Adds the halves of a node that can add anything. The half that shares the representative of `whole` needs no new ray.
+    /// Adds the halves of a node that can add anything. The half that shares the representative of `whole` needs no new
+    /// ray.
     fn open<T: Tally>(
         &self,
         node: usize,

@@ -150,8 +150,8 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     fn info(&self) -> Info {
         Self::INFO
     }
-    /// Whether other strategies may take candidates from it: it chooses at one receiver, without a view of the frame, and
-    /// takes none itself.
+    /// Whether other strategies may take candidates from it: it chooses at one receiver, without a view of the frame,
+    /// and takes none itself.
     fn gives_candidates(&self) -> bool {
         Self::INFO.role == Role::Choosing
     }

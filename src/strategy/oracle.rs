@@ -1,9 +1,9 @@
 //! The best choice of one light: by what each adds here with its shadow ray already cast.
 //!
-//! Exhaustive, and so never timed: the floor under the error of every strategy that picks a light and leaves the point on
-//! it to chance. A triangle is weighed by the root mean square over a few points, the probability of least variance
-//! (Rath et al., ACM TOG 39(4), 2020). Its points may all be hidden while it is not: `mix` of the picks goes to triangles
-//! by what they would add with nothing in between.
+//! Exhaustive, and so never timed: the floor under the error of every strategy that picks a light and leaves the point
+//! on it to chance. A triangle is weighed by the root mean square over a few points, the probability of least variance
+//! (Rath et al., ACM TOG 39(4), 2020). Its points may all be hidden while it is not: `mix` of the picks goes to
+//! triangles by what they would add with nothing in between.
 //!
 //! Strategies that choose points by visibility too, or reuse their neighbours', may lie below it.
 

@@ -13,8 +13,8 @@ use crate::visibility::stage::Stage;
 
 /// `picks` independent draws, each light with a probability in proportion to its luminous flux.
 ///
-/// By flux alone a dim lamp next to the receiver is drawn once in a million passes where a stadium stands far away; `mix` of
-/// the probability is shared out evenly instead (defensive mixing: Hesterberg, Technometrics 37(2), 1995).
+/// By flux alone a dim lamp next to the receiver is drawn once in a million passes where a stadium stands far away;
+/// `mix` of the probability is shared out evenly instead (defensive mixing: Hesterberg, Technometrics 37(2), 1995).
 pub struct Power {
     picks: u32,
     mix: f32,

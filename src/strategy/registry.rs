@@ -95,8 +95,8 @@ pub fn parse_from(entries: &[Entry], text: &str) -> Result<Configured> {
     read(entries, text, points)
 }
 
-/// Reads a strategy that another one takes candidates from. Its numbers are spread as the other's are, so that it has no
-/// `points` of its own.
+/// Reads a strategy that another one takes candidates from. Its numbers are spread as the other's are, so that it has
+/// no `points` of its own.
 pub(super) fn parse_source(text: &str) -> Result<Configured> {
     let strategy = read(STRATEGIES, text, |_, _| Ok(Points::Random))?;
     if strategy.strategy.gives_candidates() {

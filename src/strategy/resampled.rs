@@ -1,8 +1,8 @@
 //! Candidates from a cheap strategy, the choice among them by what they add here.
 //!
 //! `from` names any strategy that chooses lights at one receiver, with its parameters between `;`:
-//! `resampled:from=light-tree:arity=2;far=0.02,m=4`. With `visibility=on` every candidate costs a shadow ray, and hidden
-//! ones are never chosen.
+//! `resampled:from=light-tree:arity=2;far=0.02,m=4`. With `visibility=on` every candidate costs a shadow ray, and
+//! hidden ones are never chosen.
 
 use super::candidates::{Candidates, Pool, Recipe, Value};
 use super::parameters::Arguments;

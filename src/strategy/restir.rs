@@ -1,11 +1,12 @@
-//! Reuse of neighbours' choices within a pass: spatial resampling, ReSTIR for direct lighting without its temporal half.
+//! Reuse of neighbours' choices within a pass: spatial resampling, ReSTIR for direct lighting without its temporal
+//! half.
 //!
-//! Each receiver first chooses one candidate as `resampled` does, the point on the light included. A few receivers near it
-//! in the image lend it theirs, and it chooses among them by what each adds here. `combine` is how candidates that could
-//! have come from several receivers are weighed:
+//! Each receiver first chooses one candidate as `resampled` does, the point on the light included. A few receivers near
+//! it in the image lend it theirs, and it chooses among them by what each adds here. `combine` is how candidates that
+//! could have come from several receivers are weighed:
 //!
-//! - `pairwise`: each neighbour i shares its part of the frame's work with the receiver c alone. With p the target, at the
-//!   receiver named by its index, and k neighbours, a neighbour's candidate y counts `p_i / (k p_i + p_c)` and the
+//! - `pairwise`: each neighbour i shares its part of the frame's work with the receiver c alone. With p the target, at
+//!   the receiver named by its index, and k neighbours, a neighbour's candidate y counts `p_i / (k p_i + p_c)` and the
 //!   receiver's own the mean over i of `p_c / (k p_i + p_c)`. At any y with p_c > 0 these sum to 1: unbiased.
 //! - `1/M`: all count the same. Where a neighbour cannot produce y the sum falls short of 1: dark at edges and shadows.
 //!
@@ -16,8 +17,8 @@
 //! Passes are independent: nothing is reused over time. A history would make them correlated, and the error of the mean
 //! would no longer fall with their number, which is what is measured here.
 //!
-//! Source: Bitterli et al., ACM TOG 39(4), 2020; pairwise weights: Bitterli, thesis, Dartmouth, 2022; Lin et al., ACM TOG
-//! 41(4), 2022.
+//! Source: Bitterli et al., ACM TOG 39(4), 2020; pairwise weights: Bitterli, thesis, Dartmouth, 2022; Lin et al., ACM
+//! TOG 41(4), 2022.
 
 use super::candidates::{Candidates, Pool, Recipe, Value};
 use super::erased::{Frame, FrameSampler, PerPass};
@@ -66,7 +67,8 @@ impl Strategy for Restir {
 
     fn configure(arguments: &mut Arguments) -> Result<Self> {
         let recipe = Recipe::configure(arguments)?;
-        // Seen on downtown at 160 x 90, error x CPU time: 0.121 so, 0.130 with 3 neighbours, 0.138 with 3 within 20 pixels.
+        // Seen on downtown at 160 x 90, error x CPU time: 0.121 so, 0.130 with 3 neighbours, 0.138 with 3 within 20
+        // pixels.
         let neighbours = arguments.count("neighbours", 5, 1..=64, "neighbours asked for their candidate")?;
         let radius = arguments.real("radius", 10.0, 1.0..=1000.0, "how far neighbours may be, in pixels")?;
         let meaning = "how candidates that several receivers could have given are weighed";
@@ -201,7 +203,8 @@ impl Pass<'_> {
         (!hidden).then_some((pick, value))
     }
 
-    /// The neighbours of a receiver in this pass: points of the disc about its pixel, where there is a receiver like it.
+    /// The neighbours of a receiver in this pass: points of the disc about its pixel, where there is a receiver like
+    /// it.
     fn neighbours<'s>(&'s self, at: &'s Receiver, stream: &'s mut Stream) -> impl Iterator<Item = u32> + 's {
         let Sampler { neighbours, radius, eye, width, height, .. } = *self.sampler;
         let (x, y) = ((at.pixel % width) as f32 + 0.5, (at.pixel / width) as f32 + 0.5);

@@ -1,8 +1,8 @@
 //! A cut through a binary tree of lights, and one light at random from each of its clusters.
 //!
-//! The cut is found before anything is drawn: from the root, the cluster that could add most is replaced by its halves until
-//! there are `cut`. A pick from each stratifies the choice. Down a cluster, the probability of a half is the mean of two, one
-//! with its least distance, one with its greatest.
+//! The cut is found before anything is drawn: from the root, the cluster that could add most is replaced by its halves
+//! until there are `cut`. A pick from each stratifies the choice. Down a cluster, the probability of a half is the mean
+//! of two, one with its least distance, one with its greatest.
 //!
 //! Of the sources' pieces these are other ones here: halves are weighed with this project's horizons and cosines, which
 //! reject only what adds nothing, so that no branch is dead that should not be; the tree is that of

@@ -1,7 +1,7 @@
 //! What is a candidate worth at a receiver?
 //!
-//! The receiver's albedo is left out: it changes no choice at one receiver, and between receivers of different materials
-//! the values keep one scale.
+//! The receiver's albedo is left out: it changes no choice at one receiver, and between receivers of different
+//! materials the values keep one scale.
 
 use super::tally::Tally;
 use super::{BuildContext, Pick};

@@ -1,7 +1,7 @@
 //! Receivers by area rather than by pixel: what a city is lit like, not what one camera sees of it.
 //!
-//! Half lie on streets (level surfaces of a material that is a street), half on facades (upright surfaces of others), each with equal
-//! chance for every square metre. A point that lies within a solid is drawn again.
+//! Half lie on streets (level surfaces of a material that is a street), half on facades (upright surfaces of others),
+//! each with equal chance for every square metre. A point that lies within a solid is drawn again.
 
 use crate::base::error::{Error, Result};
 use crate::base::random::Stream;

@@ -1,7 +1,8 @@
 //! What does a hard cut-off cost, in light and in time, and what do its unbiased relatives?
 //!
-//! Against the number of lights, and against how open the scene is: a plane of equal lamps seen by a facade, where the loss has a
-//! closed form; a city without its buildings; the same city, the same lamps and the same receivers with them.
+//! Against the number of lights, and against how open the scene is: a plane of equal lamps seen by a facade, where the
+//! loss has a closed form; a city without its buildings; the same city, the same lamps and the same receivers with
+//! them.
 
 use super::area::by_area;
 use super::plane::{closed_form, plane};

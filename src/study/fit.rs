@@ -14,8 +14,8 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
-    /// The law of some points; those that are not finite and above 0 are left out. `None` for fewer than three or for one x
-    /// alone: two points lie on a line whatever they are.
+    /// The law of some points; those that are not finite and above 0 are left out. `None` for fewer than three or for
+    /// one x alone: two points lie on a line whatever they are.
     pub fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
         let positive = |v: f64| v.is_finite() && v > 0.0;
         let logs: Vec<(f64, f64)> =

@@ -1,7 +1,7 @@
 //! The experiments behind `results/`: named, seeded, each with its question.
 //!
-//! A study opens its tables, fills them row by row and says in notes what a reader must know. Tables, page and plots are then made
-//! from what it recorded, as for any result.
+//! A study opens its tables, fills them row by row and says in notes what a reader must know. Tables, page and plots
+//! are then made from what it recorded, as for any result.
 //!
 //! Adding one takes a file here and a line in [`STUDIES`].
 
@@ -87,8 +87,8 @@ pub fn find(name: &str) -> Result<Entry> {
 impl Entry {
     /// Runs the study; `command` is what was typed.
     ///
-    /// `folder` makes the folder that it is recorded in, which must hold no study yet; it is called once all that was asked for has
-    /// been read, so that a misspelt name leaves nothing behind.
+    /// `folder` makes the folder that it is recorded in, which must hold no study yet; it is called once all that was
+    /// asked for has been read, so that a misspelt name leaves nothing behind.
     pub fn run(
         &self,
         options: &Options,
@@ -148,7 +148,8 @@ impl Session<'_> {
         }
     }
 
-    /// The strategies asked for, or every registered one that chooses, or is the floor under all that do, and `variants`.
+    /// The strategies asked for, or every registered one that chooses, or is the floor under all that do, and
+    /// `variants`.
     fn strategies(&self, variants: &[&str]) -> Result<Vec<Configured>> {
         if let Some(list) = &self.options.strategies {
             return registry::parse_list(list);

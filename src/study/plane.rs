@@ -18,8 +18,8 @@ const HEIGHT: f64 = 6.0;
 /// Albedo of all there is.
 const ALBEDO: f32 = 0.3;
 
-/// A disc of lamps, one at a random place in each square of a grid, and receivers in the middle square at the lamps' height,
-/// which look evenly in all directions.
+/// A disc of lamps, one at a random place in each square of a grid, and receivers in the middle square at the lamps'
+/// height, which look evenly in all directions.
 pub(super) struct Plane {
     /// The lamps over a level ground; exposure is 1.
     pub(super) scene: Scene,
@@ -72,11 +72,13 @@ pub(super) fn plane(lights: u64, receivers: usize, seed: u64) -> Result<Plane> {
     Ok(Plane { scene, receivers, radius })
 }
 
-/// Displayed value that lamps of an endless density out of a range lose, mean over the directions in which a facade looks.
+/// Displayed value that lamps of an endless density out of a range lose, mean over the directions in which a facade
+/// looks.
 ///
-/// `2 n_c eps ln(R / r_c)` of a receiver that faces all lamps at once, with n_c lamps within the range r_c, the displayed value
-/// `eps` at which it ends, and R the radius of the disc; a facade sees half of them at a mean clamped cosine of 1/pi over the
-/// whole circle. n_c eps does not depend on the range: the loss grows as ln(R / r_c), whatever the threshold.
+/// `2 n_c eps ln(R / r_c)` of a receiver that faces all lamps at once, with n_c lamps within the range r_c, the
+/// displayed value `eps` at which it ends, and R the radius of the disc; a facade sees half of them at a mean clamped
+/// cosine of 1/pi over the whole circle. n_c eps does not depend on the range: the loss grows as ln(R / r_c), whatever
+/// the threshold.
 pub(super) fn closed_form(range: f64, threshold: f64, radius: f64) -> f64 {
     let inside = PI * range * range / (PITCH * PITCH);
     2.0 * inside * threshold * (radius / range).max(1.0).ln() / PI

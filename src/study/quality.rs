@@ -1,15 +1,17 @@
 //! How good is a choice of lights, before any ray is cast?
 //!
-//! With f the unshadowed contribution of a light at its centroid (a luminance) and n how often it is expected to be picked in a call,
-//! the second moment of the estimate of F = sum f is sum f^2 / n for one pick, so that its relative variance is
+//! With f the unshadowed contribution of a light at its centroid (a luminance) and n how often it is expected to be
+//! picked in a call, the second moment of the estimate of F = sum f is sum f^2 / n for one pick, so that its relative
+//! variance is
 //!
 //! ```text
 //! sum f^2 / n / F^2 - 1
 //! ```
 //!
-//! exactly, of one pick. Of k independent picks (n is then k times the probability) the relative variance is sum f^2 / n / F^2 - 1 / k;
-//! to compare strategies that pick differently often, all are brought to one pick: max(1, N) sum f^2 / n / F^2 - 1 with N = sum n.
-//! Where picks are not independent (lists, splitting) this is an upper bound, since such picks vary less together.
+//! exactly, of one pick. Of k independent picks (n is then k times the probability) the relative variance is sum f^2 /
+//! n / F^2 - 1 / k; to compare strategies that pick differently often, all are brought to one pick: max(1, N) sum f^2 /
+//! n / F^2 - 1 with N = sum n. Where picks are not independent (lists, splitting) this is an upper bound, since such
+//! picks vary less together.
 
 use crate::base::colour::luminance;
 use crate::base::triangle::CENTROID;

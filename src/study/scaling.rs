@@ -1,7 +1,7 @@
 //! How do set-up, memory, time and error grow with the number of lights?
 //!
-//! One recipe at its own density, its extent grown about the same middle: the camera sees the same street, and ever more lights lie
-//! beyond it. Growth is given as the exponent of the power law that fits best.
+//! One recipe at its own density, its extent grown about the same middle: the camera sees the same street, and ever
+//! more lights lie beyond it. Growth is given as the exponent of the power law that fits best.
 
 use super::cutoff::sizes;
 use super::fit::PowerLaw;

@@ -1,7 +1,8 @@
 //! Which strategy chooses best: by its probabilities alone, and measured?
 //!
-//! The first needs no rays and has no noise; it knows nothing of visibility. The second is the error at a fixed number of passes, for
-//! each sample and for each second, beside those of `oracle` (which knows visibility) and `intensity` (which knows all but that).
+//! The first needs no rays and has no noise; it knows nothing of visibility. The second is the error at a fixed number
+//! of passes, for each sample and for each second, beside those of `oracle` (which knows visibility) and `intensity`
+//! (which knows all but that).
 
 use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
@@ -298,7 +299,8 @@ impl Found {
         self.error_passes().zip(self.sample_s).map(|(error, seconds)| error * seconds)
     }
 
-    /// A figure as a multiple of another strategy's at the same number of passes: points spread over passes lower it as they grow.
+    /// A figure as a multiple of another strategy's at the same number of passes: points spread over passes lower it as
+    /// they grow.
     fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<f64>) -> Option<f64> {
         let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
         figure(self).zip(figure(to)).map(|(own, other)| own / other)

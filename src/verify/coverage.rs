@@ -15,9 +15,9 @@ const NOTICEABLE: f64 = 0.01;
 
 /// Counts the lights that add something at a receiver and have no chance there.
 ///
-/// Where expected counts cannot be told, a light that was never seen is suspicious only if weaker ones were, seen often,
-/// however weakness is measured: by flux, by what arrives with nothing in between, by what does arrive. A right strategy
-/// may wait long for a light in the shadow of another.
+/// Where expected counts cannot be told, a light that was never seen is suspicious only if weaker ones were, seen
+/// often, however weakness is measured: by flux, by what arrives with nothing in between, by what does arrive. A right
+/// strategy may wait long for a light in the shadow of another.
 pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
     let (lights, radius) = (scene.lights(), scene.radius());
     let mut missing = 0u64;

@@ -24,12 +24,12 @@ struct Difference {
 const LOPSIDED: f64 = 0.03;
 
 impl Difference {
-    /// Welch 1947: the estimate's own variance and the reference's. `model` holds the variance, the least variance and the
-    /// third central moment that the mean of the draws should have.
+    /// Welch 1947: the estimate's own variance and the reference's. `model` holds the variance, the least variance and
+    /// the third central moment that the mean of the draws should have.
     ///
-    /// The variance of the model is that of independent picks. Numbers spread evenly over passes leave less, but nothing
-    /// is gained for lights so rare that they make a mean lopsided; where it is, the test is as strong as with independent
-    /// picks.
+    /// The variance of the model is that of independent picks. Numbers spread evenly over passes leave less, but
+    /// nothing is gained for lights so rare that they make a mean lopsided; where it is, the test is as strong as with
+    /// independent picks.
     fn of(batches: &[f64], wanted: Moments, model: [f64; 3], told: bool) -> Self {
         let found = Moments::of(batches.iter().copied());
         let [model_variance, least, third] = model;
@@ -62,7 +62,8 @@ impl Difference {
     }
 }
 
-/// How far the estimate is from the truth: at each receiver, and in the mean over all, where a small common bias shows first.
+/// How far the estimate is from the truth: at each receiver, and in the mean over all, where a small common bias shows
+/// first.
 pub(super) struct Distance<'a> {
     sites: &'a [Site<'a>],
     each: Vec<Difference>,

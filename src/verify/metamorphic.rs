@@ -1,10 +1,10 @@
 //! What must not change when the scene changes in a way that changes nothing?
 //!
-//! Level 2: the scene is scaled, turned, moved and permuted, a light is split, a black one and a hidden one are added. The
-//! image then stays as it was, and so must the mean of every unbiased strategy, which is held to the truth of the changed
-//! scene; a strategy may well choose by other probabilities there, since a hierarchy that was built anew need not be the same.
-//! Only a scene of another size must leave probabilities alone: lengths times s and intensities times s^2 are the same scene in
-//! other units. Biased strategies are held to the contract alone.
+//! Level 2: the scene is scaled, turned, moved and permuted, a light is split, a black one and a hidden one are added.
+//! The image then stays as it was, and so must the mean of every unbiased strategy, which is held to the truth of the
+//! changed scene; a strategy may well choose by other probabilities there, since a hierarchy that was built anew need
+//! not be the same. Only a scene of another size must leave probabilities alone: lengths times s and intensities times
+//! s^2 are the same scene in other units. Biased strategies are held to the contract alone.
 //!
 //! The table of lights is whole on both sides: nothing is left out.
 
@@ -36,9 +36,9 @@ pub const CHANCES: usize = CHANGES.len();
 
 /// What is done to a scene, and how far apart the images may be, as a share of the mean.
 ///
-/// Receivers and corners are rounded anew, and shadow rays keep off surfaces by a share of the greatest coordinate: a light
-/// on the edge of a shadow may come or go. 10^5 m from the origin coordinates are rounded to 8 mm, and rays keep off by 2 cm
-/// where they start and where they end: the image is the same in its mean only.
+/// Receivers and corners are rounded anew, and shadow rays keep off surfaces by a share of the greatest coordinate: a
+/// light on the edge of a shadow may come or go. 10^5 m from the origin coordinates are rounded to 8 mm, and rays keep
+/// off by 2 cm where they start and where they end: the image is the same in its mean only.
 const CHANGES: [(&str, Change, f64); 8] = [
     ("scaled-0.01", Change::Scaled(0.01), 1e-3),
     ("scaled-100", Change::Scaled(100.0), 1e-3),
@@ -68,8 +68,8 @@ enum Change {
     Hidden,
 }
 
-/// Enough pixels of a film for checks: a view is built anew for every change, and a frame-wide sampler looks at all of it in
-/// every pass.
+/// Enough pixels of a film for checks: a view is built anew for every change, and a frame-wide sampler looks at all of
+/// it in every pass.
 pub const PIXELS: u32 = 64 * 36;
 
 /// A scene and its changed copies, made ready.
@@ -79,7 +79,8 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// Changes a scene in every way; its shadow rays and points on lights are those of the stage that it is compared with.
+    /// Changes a scene in every way; its shadow rays and points on lights are those of the stage that it is compared
+    /// with.
     pub fn new(scene: &Scene, offset: Offset, by: LightSampling) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
         parts.camera = parts.camera.shrunk(PIXELS);
@@ -162,7 +163,8 @@ impl<'a> Metamorphic<'a> {
         Ok(checks)
     }
 
-    /// Expected counts at the scaled place of each receiver against those at the place itself, if the sampler tells them.
+    /// Expected counts at the scaled place of each receiver against those at the place itself, if the sampler tells
+    /// them.
     fn counts(&self, base: &dyn AnySampler, samplers: &[Box<dyn AnySampler>]) -> Option<Check> {
         let lights = self.whole.stage.scene().lights().len();
         let mut worst = (0.0f64, String::new());

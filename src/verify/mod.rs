@@ -4,14 +4,16 @@
 //! statistics with fixed seeds, at one level for all hypotheses of a check together (Sidak 1967): every light that adds
 //! something can be chosen, the weights of each light sum to 1 on average, and the mean estimate is the exact sum. Each
 //! finds what the others pass: a light of little power that is never chosen does not move an estimate, a weight that is
-//! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is known.
+//! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is
+//! known.
 //!
-//! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left out
-//! here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
+//! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left
+//! out here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
 //!
-//! A check that fails is made a second time, with other numbers and more of them, and has failed if it fails again. So a
-//! wrong strategy is found at the ordinary level of the first look, and a right one fails with the *square* of its chance:
-//! many checks of many strategies need a tiny level, and there the tails of a mean of finite draws are not Student's.
+//! A check that fails is made a second time, with other numbers and more of them, and has failed if it fails again. So
+//! a wrong strategy is found at the ordinary level of the first look, and a right one fails with the *square* of its
+//! chance: many checks of many strategies need a tiny level, and there the tails of a mean of finite draws are not
+//! Student's.
 
 mod contract;
 mod coverage;

@@ -1,8 +1,8 @@
 //! What does a sampler do, seen from outside: many draws at a few receivers.
 //!
-//! Each batch is an independent run, so that batches may be compared whatever the numbers of the passes within one have to
-//! do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others, shows
-//! which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
+//! Each batch is an independent run, so that batches may be compared whatever the numbers of the passes within one have
+//! to do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others,
+//! shows which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
 
 use super::Subject;
 use super::pool::{Bin, Pool, Steady};
@@ -28,8 +28,8 @@ const PILOT: u32 = u32::MAX;
 /// A light seen fewer times in it is too rare to tell how often it is picked.
 const SEEN: f32 = 10.0;
 
-/// In deeper shadow than this, lights that are hidden take the place of those that are not, and are picked by what they could
-/// add: the little that is seen of resampling there says nothing of its mean.
+/// In deeper shadow than this, lights that are hidden take the place of those that are not, and are picked by what they
+/// could add: the little that is seen of resampling there says nothing of its mean.
 const LIT: f64 = 0.01;
 
 /// A pass that must be begun for a whole frame costs as much as that at so many receivers alone.
@@ -127,25 +127,27 @@ impl Site<'_> {
         Moments::of(bin.batches().map(|sum| sum / f64::from(self.calls)))
     }
 
-    /// A t statistic of batches without their skewness, where that must be measured: the model of picks with told counts
-    /// knows it better.
+    /// A t statistic of batches without their skewness, where that must be measured: the model of picks with told
+    /// counts knows it better.
     pub(super) fn unskewed(&self, t: f64, batches: impl IntoIterator<Item = f64> + Clone) -> f64 {
         if self.told { t } else { unskewed(t, skewness(batches), self.batches as usize) }
     }
 
-    /// Variance, least variance and third central moment that the mean of the estimate from frequent lights should have.
+    /// Variance, least variance and third central moment that the mean of the estimate from frequent lights should
+    /// have.
     pub(super) fn model(&self) -> [f64; 3] {
         let (n, batches) = (self.draws(), f64::from(self.batches));
         let Steady { variance, third, spread, .. } = self.steady;
         [variance / n, spread / batches, third / (n * n)]
     }
 
-    /// The variance of the mean of a count, a call, of which `wanted` are expected and the share `chance` is left to chance.
+    /// The variance of the mean of a count, a call, of which `wanted` are expected and the share `chance` is left to
+    /// chance.
     ///
-    /// Few picks do not show their own variance. It is Poisson's where they are independent and less where they are spread
-    /// evenly over passes: then the test is stricter on itself than it need be, and as strong as with independent picks.
-    /// However they are spread, a whole number with a mean between n and n + 1 has the variance of a toss between the two
-    /// at least; by luck, batches of even numbers may all show the same.
+    /// Few picks do not show their own variance. It is Poisson's where they are independent and less where they are
+    /// spread evenly over passes: then the test is stricter on itself than it need be, and as strong as with
+    /// independent picks. However they are spread, a whole number with a mean between n and n + 1 has the variance of a
+    /// toss between the two at least; by luck, batches of even numbers may all show the same.
     pub(super) fn variance(&self, found: Moments, wanted: f64, chance: f64) -> f64 {
         let mut variance = found.variance / found.n as f64;
         if self.told {

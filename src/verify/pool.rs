@@ -3,8 +3,8 @@
 use super::observe::toss;
 use super::truth::Truth;
 
-/// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there is
-/// nothing to test.
+/// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there
+/// is nothing to test.
 const BIN: f64 = 30.0;
 
 /// Greatest skewness that the mean of all draws may have. Lights whose rare great weights make it worse are left out of
@@ -18,10 +18,11 @@ const PART: f64 = 200.0;
 
 /// The lights that add something and can be picked, in bins.
 ///
-/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where counts cannot be
-/// told it is the sum of weight times contribution, of the very point: resampling may drop points that add nothing, and the
-/// weights of a light then sum to the share of it that is seen. It gives a light that is dim beside others a great weight on
-/// the rare occasions that it wins against them; only together do the dim ones win often enough to be tested.
+/// A bin's statistic is the sum of weight times expected count: each pick of an honest light adds 1. Where counts
+/// cannot be told it is the sum of weight times contribution, of the very point: resampling may drop points that add
+/// nothing, and the weights of a light then sum to the share of it that is seen. It gives a light that is dim beside
+/// others a great weight on the rare occasions that it wins against them; only together do the dim ones win often
+/// enough to be tested.
 pub(super) struct Pool {
     bins: Vec<Bin>,
     /// Of each light; `u32::MAX` is none.

@@ -52,8 +52,8 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
 
 /// The mean of weight times expected count over the picks of lights that add something: 1.
 ///
-/// Paired with the number of those picks, whose own mean `picks` checks: what the luck of the draw adds to both cancels,
-/// and for independent picks nothing but rounding is left.
+/// Paired with the number of those picks, whose own mean `picks` checks: what the luck of the draw adds to both
+/// cancels, and for independent picks nothing but rounding is left.
 fn total(sites: &[Site<'_>], options: &Options) -> Check {
     let known = sites.iter().filter(|site| site.expected().is_some());
     let (mut excess, mut variance, mut count) = (0.0, 0.0, 0.0);

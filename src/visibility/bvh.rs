@@ -38,7 +38,8 @@ pub(super) enum Asked {
 ///
 /// Boxes are padded by a few units in the last place, since the slab test has no error bound of its own. The builder
 /// merges one pair of equal boxes a pass: thousands of coincident lights or triangles would take quadratic time and
-/// build a list instead of a tree. So boxes that occur more than [`ALIKE`] times are grown a little, each in its own directions.
+/// build a list instead of a tree. So boxes that occur more than [`ALIKE`] times are grown a little, each in its own
+/// directions.
 pub(super) fn build(corners: impl Iterator<Item = (Vec3, Vec3)>, asked: Asked) -> Bvh2 {
     let mut boxes: Vec<Aabb> = corners.map(|(low, high)| pad(low, high)).collect();
     let alike = separate(&mut boxes);

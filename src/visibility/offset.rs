@@ -7,10 +7,10 @@ use obvhs::rt_triangle::RtTriangle;
 
 /// A shadow-ray offset policy, as numbers: every policy runs through the same code.
 ///
-/// The origin is pushed along the normal by `push + push_relative * max|coordinate|` and by `ulps` units in the last place
-/// of each coordinate; hits nearer than `t_min` do not count; the far end is shortened by
-/// `far + far_relative * (max|coordinate| + distance)`. All in metres. With `horizons`, what lies behind an end's own plane
-/// is passed over as well.
+/// The origin is pushed along the normal by `push + push_relative * max|coordinate|` and by `ulps` units in the last
+/// place of each coordinate; hits nearer than `t_min` do not count; the far end is shortened by `far + far_relative *
+/// (max|coordinate| + distance)`. All in metres. With `horizons`, what lies behind an end's own plane is passed over as
+/// well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     push: f32,
@@ -31,19 +31,20 @@ impl Offset {
     /// The modern policy of the lecture: the origin stays, hits nearer than 1e-4 are rejected.
     pub const T_MIN: Self = Self { push: 0.0, t_min: 1e-4, ..Self::ORIGIN_PUSH };
 
-    /// The origin pushed by 256 units in the last place of each coordinate times the normal's: 6 cm at 2 km, 2 m at 100 km.
-    /// The far end is shortened by as much.
+    /// The origin pushed by 256 units in the last place of each coordinate times the normal's: 6 cm at 2 km, 2 m at 100
+    /// km. The far end is shortened by as much.
     ///
     /// Source: Waechter and Binder, Ray Tracing Gems, 2019, ch. 6.
     pub const ULPS: Self = Self { push: 0.0, ulps: 256.0, far_relative: 3.05e-5, ..Self::ORIGIN_PUSH };
 
-    /// The default: the lecture's push, grown with the coordinate just enough, and no triangle blocks a ray that lies wholly
-    /// behind the plane of the receiver or of the light.
+    /// The default: the lecture's push, grown with the coordinate just enough, and no triangle blocks a ray that lies
+    /// wholly behind the plane of the receiver or of the light.
     ///
-    /// A receiver is rounded by at most 0.87 units, of 2^-23 of its greatest coordinate each (half of one on each axis), and so
-    /// is a pushed origin. A push of two units (2.4 mm at 10 km) therefore ends above the surface, however the coordinates
-    /// round: within 3.8 units and 1e-4 m. The rest is up to the two planes, which no true ray between the ends
-    /// crosses: neither an end's own triangle blocks it, nor a coplanar neighbour, nor what is behind an edge.
+    /// A receiver is rounded by at most 0.87 units, of 2^-23 of its greatest coordinate each (half of one on each
+    /// axis), and so is a pushed origin. A push of two units (2.4 mm at 10 km) therefore ends above the surface,
+    /// however the coordinates round: within 3.8 units and 1e-4 m. The rest is up to the two planes, which no true ray
+    /// between the ends crosses: neither an end's own triangle blocks it, nor a coplanar neighbour, nor what is behind
+    /// an edge.
     pub const SCALED: Self = Self { push_relative: PUSH, far_relative: PUSH, horizons: true, ..Self::ORIGIN_PUSH };
 
     /// The policies by name, default first.
@@ -60,7 +61,8 @@ impl Offset {
         Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, policy)| *policy)
     }
 
-    /// The ray from a receiver to a point of `light`, `distance` metres away in a unit `direction`; infinite for the moon.
+    /// The ray from a receiver to a point of `light`, `distance` metres away in a unit `direction`; infinite for the
+    /// moon.
     ///
     /// It is aimed from where it starts. Shifted as a whole instead, it would cross a light's own plane short of its
     /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/closed_forms.rs`). Lengths are
@@ -92,13 +94,14 @@ const PUSH: f32 = 2.0 * f32::EPSILON;
 /// Bound on the relative error of a dot product of rounded numbers, and of the normal in it.
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
-/// How far a height over any plane may be off in a scene of that size, in metres: of a corner and two edges, on three axes; and
-/// as much again for the place where a ray met it.
+/// How far a height over any plane may be off in a scene of that size, in metres: of a corner and two edges, on three
+/// axes; and as much again for the place where a ray met it.
 pub(super) fn rounding(size: Vec3) -> f32 {
     2.0 * 3.0 * ROUNDING * size.element_sum()
 }
 
-/// Each coordinate moved by so many units in its last place. Near 0, where these vanish, `steps` of 256 stand for 2^-16 m.
+/// Each coordinate moved by so many units in its last place. Near 0, where these vanish, `steps` of 256 stand for 2^-16
+/// m.
 #[inline]
 fn stepped(place: Vec3, steps: Vec3) -> Vec3 {
     const SMALL: f32 = 1.0 / 32.0;
@@ -138,8 +141,9 @@ impl Segment {
         Self { origin, along, t_min, t_max, near: Vec3::ZERO, far: Vec3::ZERO, short: 0.0 }
     }
 
-    /// Whether a triangle that was met at `t` lies wholly behind the plane of an end, so that no true ray meets it before that
-    /// end. Heights of the whole scene are off by at most `rounding` m: above that, the meeting place alone says no.
+    /// Whether a triangle that was met at `t` lies wholly behind the plane of an end, so that no true ray meets it
+    /// before that end. Heights of the whole scene are off by at most `rounding` m: above that, the meeting place alone
+    /// says no.
     #[inline]
     pub(super) fn passes_over(&self, triangle: &RtTriangle, t: f32, rounding: f32) -> bool {
         let corner = || triangle.v0 - Vec3A::from(self.origin);
@@ -151,10 +155,11 @@ impl Segment {
     }
 }
 
-/// Whether a triangle, one `corner` of it given from a point of a plane, lies nowhere `margin` or more metres before the plane,
-/// but for rounding; false without a plane.
+/// Whether a triangle, one `corner` of it given from a point of a plane, lies nowhere `margin` or more metres before
+/// the plane, but for rounding; false without a plane.
 ///
-/// Rounding grows with what goes into the heights: with the parts along the normal, so that a level ground has almost none.
+/// Rounding grows with what goes into the heights: with the parts along the normal, so that a level ground has almost
+/// none.
 #[inline]
 fn is_behind(normal: Vec3, margin: f32, corner: Vec3A, triangle: &RtTriangle) -> bool {
     let normal = Vec3A::from(normal);

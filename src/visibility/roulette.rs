@@ -1,9 +1,9 @@
 //! Which lights have a random range that reaches a point?
 //!
-//! A light whose influence radius is r reaches a distance d with probability `min(1, (r/d)^2)`. A hierarchy over the lights'
-//! centres knows of each node an upper bound of that, from its nearest point and its greatest radius. Going down, a child is
-//! entered with its bound over its parent's, so that each light survives with exactly its own probability, and
-//! a far city costs a few nodes.
+//! A light whose influence radius is r reaches a distance d with probability `min(1, (r/d)^2)`. A hierarchy over the
+//! lights' centres knows of each node an upper bound of that, from its nearest point and its greatest radius. Going
+//! down, a child is entered with its bound over its parent's, so that each light survives with exactly its own
+//! probability, and a far city costs a few nodes.
 //!
 //! Source: hierarchical Russian roulette, Tokuyoshi and Harada, Comput. Graph. Forum 38(7), 2019.
 
@@ -106,8 +106,8 @@ impl Roulette {
             + size_of_val(&self.everywhere[..])
     }
 
-    /// No light below a node survives with a greater probability. Of the same operations as [`chance`], each of which keeps
-    /// the order of its operands, so that this holds after rounding too.
+    /// No light below a node survives with a greater probability. Of the same operations as [`chance`], each of which
+    /// keeps the order of its operands, so that this holds after rounding too.
     #[inline]
     fn bound(&self, node: u32, point: Vec3) -> f32 {
         let aabb = self.bvh.nodes[node as usize].aabb();

@@ -25,18 +25,19 @@ impl Corner {
     fn crossing(&self, to: &Self, normal: DVec3) -> (DVec3, [f64; 2]) {
         let drop = self.height - to.height;
         let t = (self.height / drop).clamp(0.0, 1.0);
-        // By the line in which horizon and edge's plane meet: a mixture of corners would be off by their rounding, and so turn
-        // the edge when it passes close to the receiver.
+        // By the line in which horizon and edge's plane meet: a mixture of corners would be off by their rounding, and
+        // so turn the edge when it passes close to the receiver.
         let at = edge_normal(self.at, to.at, self.length, to.length).cross(normal) / drop;
         (at, [0, 1].map(|i| self.weights[i] + t * (to.weights[i] - self.weights[i])))
     }
 }
 
 impl Seen {
-    /// Irradiance in units of the triangle's radiance, of a Lambertian triangle that shines to both sides, clipped at the
-    /// receiver's horizon: within `[0, π]`. `normal` is the receiver's, of unit length.
+    /// Irradiance in units of the triangle's radiance, of a Lambertian triangle that shines to both sides, clipped at
+    /// the receiver's horizon: within `[0, π]`. `normal` is the receiver's, of unit length.
     ///
-    /// Error below 1e-14, and below 1e-13 of the value but for a plane or a horizon that is grazed, whatever the distance.
+    /// Error below 1e-14, and below 1e-13 of the value but for a plane or a horizon that is grazed, whatever the
+    /// distance.
     ///
     /// Source: Lambert, Photometria, 1760; Baum, Rushmeier and Winget, SIGGRAPH 1989, eq. 13.
     #[inline]
@@ -99,9 +100,9 @@ impl Seen {
         // The differences keep their digits among corners of like distance.
         let like = la.max(lb).max(lc) <= 4.0 * la.min(lb).min(lc);
         if like && near(nab2, kab) && near(nbc2, kbc) && near(nca2, kca) {
-            // With w = angle / |edge normal| the irradiance is half the sum of w n·(edge normal). The edge normals nearly
-            // cancel, so what they sum to, the triangle's own normal, is taken out at the first edge's w; the rest are small
-            // differences, each written so that it keeps its digits.
+            // With w = angle / |edge normal| the irradiance is half the sum of w n·(edge normal). The edge normals
+            // nearly cancel, so what they sum to, the triangle's own normal, is taken out at the first edge's w; the
+            // rest are small differences, each written so that it keeps its digits.
             let own = normal.dot(ab.cross(-ca));
             let (inverse_ab, inverse_bc, inverse_ca) = (1.0 / kab, 1.0 / kbc, 1.0 / kca);
             let defect = |n2: f64, inverse: f64| inverse * arctan_defect(n2 * (inverse * inverse));

@@ -8,12 +8,13 @@ use glam::DVec3;
 
 /// Points on a triangle, by their cosine to the receiver's normal over the solid angle; none below the horizon.
 ///
-/// The density is `cos / irradiance()` per steradian, so that all points of an unshadowed Lambertian light weigh the same. As
-/// there is no closed form for the map, the one for the plain solid angle ([`SolidAngle`]) is corrected by Newton's steps, each held
-/// within a bracket: the distribution functions rise, so the root is found from anywhere. A part's irradiance comes from
-/// the same code as the whole's.
+/// The density is `cos / irradiance()` per steradian, so that all points of an unshadowed Lambertian light weigh the
+/// same. As there is no closed form for the map, the one for the plain solid angle ([`SolidAngle`]) is corrected by
+/// Newton's steps, each held within a bracket: the distribution functions rise, so the root is found from anywhere. A
+/// part's irradiance comes from the same code as the whole's.
 ///
-/// Source: the two steps: Arvo, SIGGRAPH 2001 course 29, "Stratified sampling of spherical triangles"; the density: Lambert, 1760.
+/// Source: the two steps: Arvo, SIGGRAPH 2001 course 29, "Stratified sampling of spherical triangles"; the density:
+/// Lambert, 1760.
 #[derive(Clone, Copy, Debug)]
 pub struct Projected {
     parts: [Piece; 2],
@@ -32,18 +33,22 @@ struct Piece {
     triple: f64,
 }
 
-/// An interval that holds a root narrows by at least half in each two of these; Newton's steps take three to six.
-const STEPS: usize = 100;
+/// In each of these the error halves, or else the interval that holds the root, until 1e-12 is left; Newton's steps
+/// take three to six.
+const STEPS: usize = 120;
 
 impl Projected {
     /// A sampler for a receiver's unit normal; `None` where no light arrives.
     pub fn new(seen: &Seen, normal: DVec3) -> Option<Self> {
         let (parts, count) = seen.above(normal);
         let piece = |part: &Part| {
-            let [a, b, c] = part.seen.corners;
             let irradiance = part.seen.whole(normal).abs();
             let by_angle = SolidAngle::new(&part.seen).filter(|_| irradiance > 0.0)?;
-            Some(Piece { part: *part, by_angle, irradiance, triple: a.dot((b - a).cross(c - a)).abs() })
+            // By way of the steradians at the first corner, which keep their digits where the product itself would
+            // cancel: next to a corner at the receiver it would be off by orders of magnitude.
+            let [la, _, _] = part.seen.lengths;
+            let triple = part.seen.steradians_per_area([0.0; 2]) * (la * la * la);
+            Some(Piece { part: *part, by_angle, irradiance, triple })
         };
         // Parts that add nothing are left out: a corner or an edge that touches the horizon.
         let mut pieces = parts[..count].iter().filter_map(piece);
@@ -53,7 +58,8 @@ impl Projected {
         Some(Self { parts: [first, second], count, irradiance, normal })
     }
 
-    /// The irradiance for unit radiance, as [`Seen::irradiance`] gives it: the density per steradian is the cosine over it.
+    /// The irradiance for unit radiance, as [`Seen::irradiance`] gives it: the density per steradian is the cosine over
+    /// it.
     #[inline]
     pub fn irradiance(&self) -> f64 {
         self.irradiance
@@ -80,7 +86,8 @@ impl Piece {
             let end = a + to_c * share;
             let length = end.length();
             let part = Seen { corners: [a, b, end], lengths: [la, lb, length] };
-            // Turning by a radian about b adds half the arc's integral; this is by how much the end turns for each share.
+            // Turning by a radian about b adds half the arc's integral; this is by how much the end turns for each
+            // share.
             let arc = Arc::new(normal, (b, lb), (end, length));
             let turn = self.triple * lb / arc.edge_normal2;
             (part.whole(normal).abs(), 0.5 * arc.integral(arc.angle).0 * turn)
@@ -101,13 +108,13 @@ impl Piece {
     }
 }
 
-/// Where within `[0, high]` a rising function takes the value `target`, up to rounding; `function` gives value and derivative,
-/// `total` is its value at `high`.
+/// Where within `[0, high]` a rising function takes the value `target`, up to rounding; `function` gives value and
+/// derivative, `total` is its value at `high`.
 #[inline]
 fn root(target: f64, total: f64, guess: f64, high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut above) = (0.0, high);
-    let mut at = guess.clamp(0.0, high);
-    for step in 0..STEPS {
+    let (mut at, mut before) = (guess.clamp(0.0, high), f64::INFINITY);
+    for _ in 0..STEPS {
         let (value, slope) = function(at);
         let off = value - target;
         if off.abs() <= 4e-16 * total {
@@ -120,7 +127,10 @@ fn root(target: f64, total: f64, guess: f64, high: f64, function: impl Fn(f64) -
         }
         let newton = at - off / slope;
         // A step that leaves the bracket, or a function too flat or too curved for Newton's: halve.
-        let next = if newton > low && newton < above && step % 8 != 7 { newton } else { 0.5 * (low + above) };
+        // Once only rounding is left, nothing halves.
+        let helps = off.abs() <= (0.5 * before).max(1e-12 * total);
+        let next = if newton > low && newton < above && helps { newton } else { 0.5 * (low + above) };
+        before = off.abs();
         if (next - at).abs() <= 1e-16 * high || next <= low || next >= above {
             return next.clamp(low, above);
         }
@@ -149,8 +159,8 @@ impl Arc {
         Self { at_pole, at_right, angle: arctan2(length, pole.0.dot(end.0)), edge_normal2: length * length }
     }
 
-    /// Twice the integral of cosine times sine from the pole to an angle (the light of a narrow wedge there, per radian of its
-    /// width), and its derivative.
+    /// Twice the integral of cosine times sine from the pole to an angle (the light of a narrow wedge there, per radian
+    /// of its width), and its derivative.
     #[inline]
     fn integral(&self, angle: f64) -> (f64, f64) {
         let (sin, cos) = angle.sin_cos();

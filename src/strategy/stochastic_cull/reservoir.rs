@@ -1,9 +1,9 @@
 //! A few lights from any number of candidates, seen once each and kept nowhere.
 //!
-//! Each place holds one of the candidates seen so far with a probability in proportion to its weight. A place that chose when
-//! the weights summed to W keeps its candidate until they exceed W / u, u uniform: the candidate that crosses that mark
-//! takes it. So a candidate costs one comparison a place and no random number (Efraimidis and Spirakis, Inf. Process.
-//! Lett. 97(5), 2006, section 3; with replacement).
+//! Each place holds one of the candidates seen so far with a probability in proportion to its weight. A place that
+//! chose when the weights summed to W keeps its candidate until they exceed W / u, u uniform: the candidate that
+//! crosses that mark takes it. So a candidate costs one comparison a place and no random number (Efraimidis and
+//! Spirakis, Inf. Process. Lett. 97(5), 2006, section 3; with replacement).
 
 use crate::base::random::Stream;
 use crate::scene::light::LightId;
@@ -31,7 +31,8 @@ impl Reservoir {
         self.total = 0.0;
     }
 
-    /// Shows it a light that stands for `1 / chance` of its like, to be chosen by `target`; one of target 0 is passed over.
+    /// Shows it a light that stands for `1 / chance` of its like, to be chosen by `target`; one of target 0 is passed
+    /// over.
     #[inline]
     pub(super) fn offer(&mut self, light: LightId, target: f32, chance: f32, rng: &mut Stream) {
         if target <= 0.0 {

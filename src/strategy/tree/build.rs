@@ -1,7 +1,7 @@
 //! How does a set of lights become a tree?
 //!
-//! From the top: a node's set is cut in two, then the costliest part again, until there are `N` or each would fit a node.
-//! That is the binary tree of the heuristic with the levels that matter most merged, without ever holding it.
+//! From the top: a node's set is cut in two, then the costliest part again, until there are `N` or each would fit a
+//! node. That is the binary tree of the heuristic with the levels that matter most merged, without ever holding it.
 
 use super::bounds::{Bounds, Item};
 use super::node::Node;
@@ -11,8 +11,8 @@ use std::ops::Range;
 /// Sets of fewer lights are built on one thread.
 const ALONE: usize = 2048;
 
-/// Below this depth sets are halved by number. Costs alone could peel off one light a level where each is far stronger than
-/// the next.
+/// Below this depth sets are halved by number. Costs alone could peel off one light a level where each is far stronger
+/// than the next.
 const BY_COST: u32 = 40;
 
 /// A part of a node's set.

@@ -1,9 +1,9 @@
 //! How is a cluster weighed at a receiver?
 //!
-//! By an estimate, in lx, of the irradiance that its lights send there with nothing in between: peak intensity times emission
-//! times the receiver's cosine over the squared distance. Clusters of points, spots and triangles compare, since all are in
-//! one unit: weighed by flux, a lamp would count for four windows. Both ways of weighing are conservative and neither depends
-//! on the unit of length. No trigonometric function is called.
+//! By an estimate, in lx, of the irradiance that its lights send there with nothing in between: peak intensity times
+//! emission times the receiver's cosine over the squared distance. Clusters of points, spots and triangles compare,
+//! since all are in one unit: weighed by flux, a lamp would count for four windows. Both ways of weighing are
+//! conservative and neither depends on the unit of length. No trigonometric function is called.
 
 use super::node::{Node, direction};
 use crate::scene::receiver::Receiver;
@@ -12,8 +12,8 @@ use glam::Vec3;
 /// How clusters are weighed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighing {
-    /// Horizons of the receiver and of the emitters tested against the cluster's box; cosines are means over what of the
-    /// box lies above them, its lights spread evenly in it.
+    /// Horizons of the receiver and of the emitters tested against the cluster's box; cosines are means over what of
+    /// the box lies above them, its lights spread evenly in it.
     #[default]
     Box,
     /// As Conty Estevez and Kulla 2018 and pbrt-v4: the greatest emission over a cone around the bounding sphere, the
@@ -39,23 +39,25 @@ pub struct How {
     /// At which distance.
     pub distance: Distance,
     /// A cluster whose squared half diagonal is less than this share of its squared distance, all above the receiver's
-    /// horizon and all alike in direction, is not walked into: a light is chosen by peak intensity at once. 0 for never.
+    /// horizon and all alike in direction, is not walked into: a light is chosen by peak intensity at once. 0 for
+    /// never.
     pub far: f32,
 }
 
-/// What bounds rounding, as a share of the lengths involved: some thirty times half a unit in the last place. What shading
-/// finds above a horizon by rounding alone must not be rejected here.
+/// What bounds rounding, as a share of the lengths involved: some thirty times half a unit in the last place. What
+/// shading finds above a horizon by rounding alone must not be rejected here.
 const MARGIN: f32 = 2e-6;
 
 /// Least squared distance at which a cluster around the receiver is weighed, as a share of its squared half diagonal.
 const NEAREST: f32 = 1e-5;
 
-/// One over the solid angle of all that lies above a horizon. The mean of cosine over squared distance, over a plane section
-/// of a box along the horizon, is the solid angle that it fills over its area: 2 pi at most, however near the box is.
+/// One over the solid angle of all that lies above a horizon. The mean of cosine over squared distance, over a plane
+/// section of a box along the horizon, is the solid angle that it fills over its area: 2 pi at most, however near the
+/// box is.
 const HALF_SPACE: f32 = 1.0 / (2.0 * std::f32::consts::PI);
 
-/// Least squared distance of the classic weight, as a share of the squared half diagonal: half the radius, as in its source but
-/// in its unit.
+/// Least squared distance of the classic weight, as a share of the squared half diagonal: half the radius, as in its
+/// source but in its unit.
 const HALF_RADIUS2: f32 = 0.25;
 
 /// The estimates of a node's slots, 0 where no light of a slot can add anything.
@@ -171,7 +173,8 @@ fn box_distance2(v: [f32; 3], half: [f32; 3], side: f32) -> f32 {
 
 /// Cosine of an angle less another, 1 if that is negative; both within 0 and pi, given by their cosines.
 ///
-/// Never less than exact: where a cosine is near -1 or 1, half its digits are missing from its sine, and these are added.
+/// Never less than exact: where a cosine is near -1 or 1, half its digits are missing from its sine, and these are
+/// added.
 #[inline(always)]
 fn cos_minus(cos_a: f32, cos_b: f32) -> f32 {
     let sin = |cos: f32| (larger(1.0 - cos * cos, 0.0) + MARGIN).sqrt();

@@ -1,8 +1,8 @@
 //! Where is a set of lights best cut in two?
 //!
-//! By buckets along each axis, at the boundary of least cost. Decisions are the same for a scene in another unit of length,
-//! whose coordinates are rounded otherwise: near-ties go to the first, boundaries keep off the regular grids that cities are
-//! made of, and an axis along which the lights hardly differ is left alone.
+//! By buckets along each axis, at the boundary of least cost. Decisions are the same for a scene in another unit of
+//! length, whose coordinates are rounded otherwise: near-ties go to the first, boundaries keep off the regular grids
+//! that cities are made of, and an axis along which the lights hardly differ is left alone.
 
 use super::bounds::{Bounds, Item};
 use glam::Vec3A;
@@ -13,7 +13,8 @@ const BUCKETS: usize = 16;
 /// Two costs nearer to each other than this, relatively, are equal.
 pub(super) const TIE: f64 = 1e-5;
 
-/// Reorders the items so that those of one half come first; gives their number, neither 0 nor all. Needs two items or more.
+/// Reorders the items so that those of one half come first; gives their number, neither 0 nor all. Needs two items or
+/// more.
 pub(super) fn split(items: &mut [Item]) -> usize {
     let middle = items.len() / 2;
     if items.len() == 2 {

@@ -1,7 +1,7 @@
 //! How is a light chosen, and with which probability?
 //!
-//! One number chooses at every node: what is left of it within the chosen slot's share is stretched to [0, 1) again. Once its
-//! digits are used up, a new one is drawn.
+//! One number chooses at every node: what is left of it within the chosen slot's share is stretched to [0, 1) again.
+//! Once its digits are used up, a new one is drawn.
 
 use super::Tree;
 use super::importance::{directional, weigh};
@@ -23,8 +23,8 @@ const REMEMBERED: usize = 4096;
 
 /// What has been worked out at the receiver that was arrived at.
 ///
-/// Passes at one receiver meet the same nodes, those near the root each time. A node's shares are kept in the place that its
-/// number gives, until another node claims it.
+/// Passes at one receiver meet the same nodes, those near the root each time. A node's shares are kept in the place
+/// that its number gives, until another node claims it.
 pub struct Memory<const N: usize> {
     arrival: u32,
     kept: Vec<Kept<N>>,

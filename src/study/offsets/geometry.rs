@@ -16,8 +16,8 @@ pub(super) enum Geometry {
     Flat,
     /// The same slope and kerbs on it, with lamps and panels 3 to 80 cm high.
     Grazing,
-    /// A corner of thin walls, a floor, a lean-to at 15 degrees and stairs; lamps and panels stand inside, and outside from 2 cm
-    /// behind the walls on.
+    /// A corner of thin walls, a floor, a lean-to at 15 degrees and stairs; lamps and panels stand inside, and outside
+    /// from 2 cm behind the walls on.
     Concave,
 }
 

@@ -1,7 +1,7 @@
 //! Which shadow-ray offset keeps surfaces free of acne and of light leaks, and how far from the origin?
 //!
-//! Scenes are moved as a whole, coordinates rounded to f32 where they end up, and the same rays are cast under each policy and
-//! in f64.
+//! Scenes are moved as a whole, coordinates rounded to f32 where they end up, and the same rays are cast under each
+//! policy and in f64.
 
 mod geometry;
 mod tracer;

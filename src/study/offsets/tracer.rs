@@ -1,11 +1,11 @@
 //! Is a light seen, as f64 tells from the rounded numbers?
 //!
-//! Every triangle is tried, by Moeller and Trumbore's test in f64; the receiver's own triangle and the light's own are left out. A
-//! ray starts on the receiver's own plane, at the place that its rounded position stands for.
+//! Every triangle is tried, by Moeller and Trumbore's test in f64; the receiver's own triangle and the light's own are
+//! left out. A ray starts on the receiver's own plane, at the place that its rounded position stands for.
 //!
-//! A ray is undecided where the answer hangs on less than the tolerance: where it passes some triangle's edge, or begins or ends at
-//! some triangle, nearer than that; nearer measured across the ray, so that a shift of the ray by the tolerance could change
-//! the answer, and only then.
+//! A ray is undecided where the answer hangs on less than the tolerance: where it passes some triangle's edge, or
+//! begins or ends at some triangle, nearer than that; nearer measured across the ray, so that a shift of the ray by the
+//! tolerance could change the answer, and only then.
 
 use glam::{DVec3, Vec3};
 

@@ -34,7 +34,8 @@ pub(super) struct Measured {
 
 const CONFIDENCE: f64 = 0.95;
 
-/// Measures contenders at the same receivers in independent runs, all of them in each run, each run on a thread of its own.
+/// Measures contenders at the same receivers in independent runs, all of them in each run, each run on a thread of its
+/// own.
 pub(super) fn measure(
     session: &Session<'_>,
     what: &str,

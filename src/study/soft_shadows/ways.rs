@@ -27,7 +27,8 @@ const RATIOS: std::ops::RangeInclusive<i32> = -7..=4;
 /// Triangles and receivers of a ratio, and points on each.
 const PAIRS: usize = 600;
 const SAMPLES: usize = 400;
-/// CPU seconds of the rest of a sample: choosing the light and its shadow ray, as `power` and `light-tree` take in cities.
+/// CPU seconds of the rest of a sample: choosing the light and its shadow ray, as `power` and `light-tree` take in
+/// cities.
 const REST: f64 = 300e-9;
 
 /// The ways that are settled.
