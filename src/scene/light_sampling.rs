@@ -51,7 +51,7 @@ impl LightSampling {
 
 /// Area over squared distance of its centroid from which on a triangle is not sampled by area.
 ///
-/// Where `study soft-shadows` sees the lower variance begin to pay for the longer time: cost 1.15 at 2, 0.6 at 4, against area. It
-/// takes for granted a relative variance of 1 that choosing a light and visibility leave anyway, and 300 ns for both. Projected sampling costs as much there and more
-/// of each ray where other errors are small: it is left to those who ask for it.
+/// Where `study soft-shadows` sees the lower variance begin to pay for the longer time: cost 1.15 at 2, 0.6 at 4, against
+/// area. It takes for granted a relative variance of 1 that choosing a light and visibility leave anyway, and 300 ns for
+/// both. Projected sampling costs as much there and more where other errors are small: it is left to those who ask for it.
 const LARGE: f32 = 2.3;
