@@ -24,8 +24,11 @@ use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
-pub(crate) use pass::drawn2;
 use reservoir::Reservoir;
+
+// What `stability` holds to more digits.
+#[cfg(feature = "measure")]
+pub(crate) use pass::drawn2;
 
 /// Lights with random ranges, `picks` of them shaded.
 pub struct StochasticCull {

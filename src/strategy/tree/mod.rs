@@ -28,13 +28,18 @@ pub mod walk;
 use crate::base::colour::luminance;
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
-pub(crate) use bounds::centred;
 use bounds::{Item, peak};
-pub(crate) use cut::relative_variance;
 use glam::Vec3;
 use importance::How;
 use node::{Node, Slot};
-pub(crate) use node::{STEP, steps};
+
+// What `stability` holds to more digits.
+#[cfg(feature = "measure")]
+pub(crate) use {
+    bounds::centred,
+    cut::relative_variance,
+    node::{STEP, steps},
+};
 
 /// A light tree of `N`-wide nodes.
 pub struct Tree<const N: usize> {
