@@ -1,4 +1,4 @@
-//! What is a point of a triangle worth that is drawn by the angle it fills?
+//! How does a receiver see a triangle light, and what is a point worth that is drawn by the angle it fills?
 //!
 //! Evaluated in f64: next to a light, or far from a thin one, f32 has no digits left.
 
@@ -16,11 +16,17 @@ pub(super) struct Drawn {
     pub(super) irradiance: f64,
 }
 
+/// A triangle light as a receiver sees it.
+#[inline]
+pub fn seen(light: &Light, at: &Receiver) -> Seen {
+    let first = light.position.as_dvec3() - at.position.as_dvec3();
+    Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()])
+}
+
 /// The point that `uv` stands for, by solid angle or projected; `None` where nothing arrives. The receiver is in front.
 #[inline(never)]
 pub(super) fn by_angle(light: &Light, uv: [f32; 2], at: &Receiver, projected: bool) -> Option<Drawn> {
-    let first = light.position.as_dvec3() - at.position.as_dvec3();
-    let seen = Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()]);
+    let seen = seen(light, at);
     let (normal, uv) = (at.normal.as_dvec3(), uv.map(f64::from));
     let drawn = if projected {
         let map = Projected::new(&seen, normal)?;

@@ -15,10 +15,10 @@ use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::colour::luminance;
 use crate::base::draws::Draws;
 use crate::base::error::Result;
-use crate::base::triangle::Seen;
 use crate::scene::Scene;
-use crate::scene::light::{Kind, Light, LightId};
+use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
+use crate::shading::by_angle::seen;
 use crate::shading::importance::importance;
 use crate::visibility::stage::Stage;
 use rayon::prelude::*;
@@ -129,7 +129,7 @@ impl Sampler {
                 Weights::Heuristic => {
                     // None of 0 that could add anything: in its plane but for rounding.
                     let least = LEAST * f64::from(importance(light, at));
-                    let arriving = solid_angle(light, at) * f64::from(luminance(light.colour));
+                    let arriving = seen(light, at).solid_angle().abs() * f64::from(luminance(light.colour));
                     if least > 0.0 { arriving.max(least) * albedo } else { 0.0 }
                 }
             }
@@ -140,12 +140,6 @@ impl Sampler {
     fn points(&self, at: &Receiver) -> impl Iterator<Item = f64> {
         self.weights(at).map(|weight| whole(weight * self.points))
     }
-}
-
-/// Solid angle of a triangle light in steradians.
-fn solid_angle(light: &Light, at: &Receiver) -> f64 {
-    let first = light.position.as_dvec3() - at.position.as_dvec3();
-    Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()]).solid_angle().abs()
 }
 
 impl LightSampler for Sampler {
