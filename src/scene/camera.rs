@@ -20,6 +20,20 @@ pub struct Camera {
 impl Camera {
     /// A camera at `position` that looks at `target` with +z up; `fov` is the vertical field of view in degrees.
     pub fn new(position: Vec3, target: Vec3, fov: f32, width: u32, height: u32) -> Result<Self> {
+        let forward = (target - position).as_dvec3();
+        if !position.is_finite() || !target.is_finite() || forward.length() < 1e-6 {
+            return Err(Error::Invalid(format!(
+                "the camera at {position} needs a finite target away from it, not {target}"
+            )));
+        }
+        // Looking straight up or down, the top of the picture is towards +y.
+        let up = if forward.normalize().z.abs() > 0.999_999 { DVec3::Y } else { DVec3::Z };
+        Self::oriented(position, forward, up, fov, width, height)
+    }
+
+    /// A camera at `position` that looks along `forward`, the top of the picture towards `up`; neither need be a unit
+    /// vector, and `up` need not be perpendicular. `fov` is the vertical field of view in degrees.
+    pub fn oriented(position: Vec3, forward: DVec3, up: DVec3, fov: f32, width: u32, height: u32) -> Result<Self> {
         if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(Error::Invalid(format!(
                 "the film is {width} x {height} pixels; it needs at least 1 x 1 and at most 2^24 ({MOST_PIXELS}) in all"
@@ -28,16 +42,12 @@ impl Camera {
         if !(fov > 0.0 && fov < 180.0) {
             return Err(Error::Invalid(format!("the field of view is {fov} degrees; it must lie between 0 and 180")));
         }
-        let forward = (target - position).as_dvec3();
-        if !position.is_finite() || !target.is_finite() || forward.length() < 1e-6 {
+        let (forward, right) = (forward.normalize_or_zero(), forward.cross(up).normalize_or_zero());
+        if !position.is_finite() || forward == DVec3::ZERO || right == DVec3::ZERO {
             return Err(Error::Invalid(format!(
-                "the camera at {position} needs a finite target away from it, not {target}"
+                "the camera at {position} needs finite directions forward and up that are not parallel"
             )));
         }
-        let forward = forward.normalize();
-        // Looking straight up or down, the top of the picture is towards +y.
-        let up = if forward.z.abs() > 0.999_999 { DVec3::Y } else { DVec3::Z };
-        let right = forward.cross(up).normalize();
         let half_height = (f64::from(fov).to_radians() * 0.5).tan();
         let down = forward.cross(right) * half_height;
         let right = right * half_height * f64::from(width) / f64::from(height);
@@ -62,6 +72,26 @@ impl Camera {
     /// Where the camera stands, in scene coordinates.
     pub fn position(&self) -> Vec3 {
         self.position
+    }
+
+    /// Unit vector along which it looks.
+    pub fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
+    /// Unit vector towards the top of the picture.
+    pub fn up(&self) -> DVec3 {
+        -self.down.normalize()
+    }
+
+    /// Unit vector towards the right of the picture.
+    pub fn right(&self) -> DVec3 {
+        self.right.normalize()
+    }
+
+    /// Vertical field of view in degrees.
+    pub fn fov(&self) -> f64 {
+        2.0 * self.down.length().atan().to_degrees()
     }
 
     /// Pixels across and down.
@@ -96,6 +126,27 @@ mod tests {
     }
 
     #[test]
+    fn a_camera_is_made_again_from_what_it_tells() {
+        let camera = Camera::new(Vec3::new(3.0, -2.0, 5.0), Vec3::new(0.5, 4.0, 1.0), 50.0, 16, 9).expect("a camera");
+        let rolled = camera.turned(camera.position(), DQuat::from_axis_angle(camera.forward(), 0.3));
+        for camera in [camera, rolled] {
+            let again = Camera::oriented(
+                camera.position(),
+                camera.forward(),
+                camera.up(),
+                camera.fov() as f32,
+                camera.resolution().0,
+                camera.resolution().1,
+            )
+            .expect("a camera");
+            for (x, y) in [(0, 0), (15, 0), (7, 4), (0, 8)] {
+                assert!((again.direction(x, y) - camera.direction(x, y)).length() < 1e-6);
+            }
+            assert!((camera.right() - camera.forward().cross(camera.up())).length() < 1e-12);
+        }
+    }
+
+    #[test]
     fn impossible_cameras_are_refused() {
         assert!(Camera::new(Vec3::ZERO, Vec3::Y, 90.0, 0, 3).is_err());
         assert!(Camera::new(Vec3::ZERO, Vec3::ZERO, 90.0, 3, 3).is_err());
@@ -104,5 +155,7 @@ mod tests {
         assert!(error.to_string().contains("4097 x 4096") && error.to_string().contains("2^24"), "{error}");
         assert!(Camera::new(Vec3::ZERO, Vec3::Y, 180.0, 3, 3).is_err());
         assert!(Camera::new(Vec3::NAN, Vec3::Y, 60.0, 3, 3).is_err());
+        assert!(Camera::oriented(Vec3::ZERO, DVec3::Y, DVec3::Y * 2.0, 60.0, 3, 3).is_err());
+        assert!(Camera::oriented(Vec3::ZERO, DVec3::NAN, DVec3::Y, 60.0, 3, 3).is_err());
     }
 }
