@@ -14,6 +14,12 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// The inverse of [`srgb_encode`]: encoded `[0, 1]` to linear `[0, 1]`; clamps.
+pub fn srgb_decode(encoded: f32) -> f32 {
+    let x = encoded.clamp(0.0, 1.0);
+    if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}
+
 /// Colour of a black body as linear Rec. 709 with luminance 1; `kelvin` is held within 1,700 to 15,000.
 ///
 /// Negative components (a sodium lamp lies outside the gamut) are set to 0 before normalising.
@@ -54,5 +60,10 @@ mod tests {
     fn srgb_is_continuous_and_monotone() {
         assert!((srgb_encode(0.003_130_8) - srgb_encode(0.003_130_9)).abs() < 2e-6);
         assert!((srgb_encode(1.0) - 1.0).abs() < 1e-6);
+        for code in 0..=255u8 {
+            let encoded = f32::from(code) / 255.0;
+            assert!((srgb_encode(srgb_decode(encoded)) - encoded).abs() < 1e-6, "{code}");
+        }
+        assert!((srgb_decode(0.5) - 0.214_041_14).abs() < 1e-6);
     }
 }

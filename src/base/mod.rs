@@ -1,5 +1,5 @@
 //! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
-//! statistics, colour, files, errors.
+//! statistics, relative error, colour, files, errors.
 
 pub mod colour;
 pub mod discrete;
@@ -9,5 +9,6 @@ pub mod error;
 pub mod file;
 pub mod names;
 pub mod random;
+pub mod rel_mse;
 pub mod statistics;
 pub mod triangle;

@@ -4,6 +4,7 @@
 //! interrupted.
 
 mod compare;
+mod diff_image;
 mod inspect;
 mod list;
 mod progress;
@@ -39,6 +40,8 @@ enum Verb {
     Render(render::Arguments),
     /// The exact image and its standard error, cached
     Reference(reference::Arguments),
+    /// How far a picture is from another: MSE, relMSE, FLIP
+    DiffImage(diff_image::Arguments),
     /// What is in a scene, and what can be left out of it
     Inspect(inspect::Arguments),
     /// The experiments behind results/, by name
@@ -65,6 +68,7 @@ pub fn run() -> ExitCode {
         Verb::Stability(arguments) => stability::run(arguments),
         Verb::Render(arguments) => render::run(arguments),
         Verb::Reference(arguments) => reference::run(arguments),
+        Verb::DiffImage(arguments) => diff_image::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),
         Verb::Study(arguments) => study::run(arguments),
         Verb::List(arguments) => list::run(arguments),

@@ -117,14 +117,16 @@ pub(super) fn resolution(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| "two whole numbers of 1 or more are right, as 240x135".into())
 }
 
-fn finite(text: &str) -> Result<f32, String> {
+/// Parses an exposure value.
+pub(super) fn finite(text: &str) -> Result<f32, String> {
     text.parse()
         .ok()
         .filter(|x: &f32| x.is_finite() && x.abs() <= 60.0)
         .ok_or_else(|| "a number from -60 to 60 is right".into())
 }
 
-fn positive(text: &str) -> Result<f32, String> {
+/// Parses a factor.
+pub(super) fn positive(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|x: &f32| x.is_normal() && *x > 0.0).ok_or_else(|| "a number above 0 is right".into())
 }
 

@@ -1,13 +1,19 @@
-//! Pictures on disk: what a picture is, and which file format a name asks for.
+//! Pictures: what one is, which file format a name asks for, and how far two are apart.
 //!
 //! PNG is for the eye (exposure and the sRGB curve, 8 bits), EXR for numbers (linear, 32-bit floats, no exposure).
 
 pub mod exr;
+pub mod flip;
+pub mod map;
+pub mod metrics;
 pub mod png;
 
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use std::path::Path;
+
+/// A picture with more pixels than this is not read: 8,192 x 8,192, which is 800 MB.
+pub const MOST_PIXELS: usize = 1 << 26;
 
 /// A picture in linear Rec. 709, in any unit (the renderer uses cd/m^2).
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +59,16 @@ impl Format {
             "exr" => Ok(Self::Exr),
             _ => Err(Error::Invalid(format!("cannot tell the format of `{}`: use .png or .exr", path.display()))),
         }
+    }
+}
+
+/// Reads a picture in the format that the extension of `path` names.
+///
+/// EXR gives its numbers as they are, PNG its displayed values, `[0, 1]`, with the sRGB curve undone.
+pub fn read(path: &Path) -> Result<Picture> {
+    match Format::of(path)? {
+        Format::Png => png::read(path),
+        Format::Exr => exr::read(path),
     }
 }
 

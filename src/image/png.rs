@@ -1,10 +1,14 @@
-//! Linear light to 8 bits that a screen shows.
+//! Linear light to 8 bits that a screen shows, and back.
 
-use super::Picture;
-use crate::base::colour::srgb_encode;
+use super::{MOST_PIXELS, Picture};
+use crate::base::colour::{srgb_decode, srgb_encode};
 use crate::base::error::{Error, Result};
-use ::image::codecs::png::PngEncoder;
-use ::image::{ExtendedColorType, ImageEncoder};
+use ::image::codecs::png::{PngDecoder, PngEncoder};
+use ::image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, Limits};
+use std::fmt::Display;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
 
 /// What a pixel that is not finite becomes: a colour that no lamp has.
 const MAGENTA: [u8; 3] = [255, 0, 255];
@@ -15,12 +19,47 @@ const MAGENTA: [u8; 3] = [255, 0, 255];
 /// A pixel with a component that is NaN or infinite becomes magenta. The same picture gives the same bytes.
 pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
     picture.check()?;
-    let texels: Vec<u8> = picture.pixels.iter().flat_map(|pixel| texel(*pixel, exposure)).collect();
+    let texels: Vec<[u8; 3]> = picture.pixels.iter().map(|pixel| texel(*pixel, exposure)).collect();
+    encode_texels(picture.width, picture.height, &texels)
+}
+
+/// The bytes of a PNG file of these 8-bit sRGB colours, row by row from the top.
+pub fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)
-        .write_image(&texels, picture.width, picture.height, ExtendedColorType::Rgb8)
+        .write_image(texels.as_flattened(), width, height, ExtendedColorType::Rgb8)
         .map_err(|e| Error::Invalid(format!("cannot encode the picture as PNG: {e}")))?;
     Ok(bytes)
+}
+
+/// Reads a PNG file of 8 or 16 bits, in colour or grey, as linear values in `[0, 1]`; it is taken to be sRGB, and its
+/// opacity is ignored.
+///
+/// A file that cannot be opened is [`Error::Io`]; one that is damaged or larger than [`MOST_PIXELS`] is
+/// [`Error::Input`].
+pub fn read(path: &Path) -> Result<Picture> {
+    let file = File::open(path).map_err(Error::io("read", path))?;
+    let mut limits = Limits::default();
+    // 16 bits in four channels.
+    limits.max_alloc = Some(8 * MOST_PIXELS as u64);
+    let decoder = PngDecoder::with_limits(BufReader::new(file), limits).map_err(|e| unreadable(path, e))?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS as u64 {
+        return Err(unreadable(path, format!("{width} x {height} pixels; at most {MOST_PIXELS} are read")));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| unreadable(path, e))?;
+    let linear = |code: u16| srgb_decode(f32::from(code) / f32::from(u16::MAX));
+    let pixels = image.into_rgb16().pixels().map(|texel| texel.0.map(linear)).collect();
+    Ok(Picture { width, height, pixels })
+}
+
+fn unreadable(path: &Path, why: impl Display) -> Error {
+    Error::Input {
+        file: path.to_owned(),
+        line: None,
+        field: String::new(),
+        message: format!("not a PNG picture that can be read: {why}"),
+    }
 }
 
 /// One pixel in 8 bits.

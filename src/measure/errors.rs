@@ -2,6 +2,7 @@
 
 use super::target::places;
 use crate::base::colour::luminance;
+use crate::base::rel_mse::{Means, RelMse};
 use glam::{DVec3, Vec3};
 
 /// The exact radiance of the measured receivers: two independent halves, equal where the sum is free of noise.
@@ -9,7 +10,7 @@ use glam::{DVec3, Vec3};
 pub struct Truth {
     halves: [Vec<Vec3>; 2],
     mean: Vec<Vec3>,
-    epsilon: Vec3,
+    relative: RelMse,
     /// Receivers by luminance of the truth, darkest first.
     by_luminance: Vec<u32>,
 }
@@ -33,15 +34,12 @@ pub struct Errors {
 
 impl Truth {
     /// From two independent halves.
-    ///
-    /// Epsilon, per channel, is 0.01 times the square of the mean over the receivers.
     pub fn new(halves: [Vec<Vec3>; 2]) -> Self {
         let mean: Vec<Vec3> =
             halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
-        let average = mean.iter().fold(DVec3::ZERO, |sum, x| sum + x.as_dvec3()) / mean.len().max(1) as f64;
         let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
         by_luminance.sort_by(|&a, &b| luminance(mean[a as usize]).total_cmp(&luminance(mean[b as usize])));
-        Self { epsilon: (average * average * 0.01).as_vec3(), halves, mean, by_luminance }
+        Self { relative: RelMse::about(&mean), halves, mean, by_luminance }
     }
 
     /// The truth at about `count` of its receivers: those of [`Target::thinned`](super::target::Target::thinned).
@@ -57,7 +55,7 @@ impl Truth {
 
     /// The epsilon of relMSE, per channel.
     pub fn epsilon(&self) -> Vec3 {
-        self.epsilon
+        self.relative.epsilon()
     }
 
     /// relMSE of the mean of the halves about what it estimates; 0 for an exact sum.
@@ -78,11 +76,9 @@ impl Truth {
         if total > 0.0 { variance.sqrt() / total } else { 0.0 }
     }
 
-    /// `1 / (truth^2 + epsilon)` per channel; 0 where that would be a division of nothing by nothing.
+    /// What the squared error of a receiver is multiplied by, per channel: see [`RelMse::weight`].
     pub fn weight(&self, i: usize) -> DVec3 {
-        let r = self.mean[i].as_dvec3();
-        let denominator = r * r + self.epsilon.as_dvec3();
-        DVec3::select(denominator.cmpgt(DVec3::ZERO), denominator.recip(), DVec3::ZERO)
+        self.relative.weight(self.mean[i])
     }
 
     /// Mean over receivers and channels.
@@ -110,18 +106,14 @@ impl Truth {
         }
         let squares: Vec<DVec3> = (0..n).map(|i| self.product(i, image[i].as_dvec3())).collect();
         let relative: Vec<f64> = (0..n).map(|i| (squares[i] * self.weight(i)).element_sum() / 3.0).collect();
-        let total: f64 = relative.iter().sum();
-        let mut sorted = relative.clone();
-        sorted.sort_by(f64::total_cmp);
-        let worst = n.div_ceil(1000).min(n);
-        let kept: f64 = sorted[..n - worst].iter().sum();
+        let Means { all: rel_mse, trimmed: rel_mse_trimmed, trimmed_share } = Means::of(&relative);
         let energy = |image: &[Vec3]| image.iter().map(|&x| f64::from(luminance(x))).sum::<f64>();
         let (energy, expected) = (energy(image), energy(&self.mean));
         Errors {
             mse: squares.iter().map(|s| s.element_sum()).sum::<f64>() / (3 * n) as f64,
-            rel_mse: total / n as f64,
-            rel_mse_trimmed: if n > worst { kept / (n - worst) as f64 } else { 0.0 },
-            trimmed_share: if total > 0.0 { ((total - kept) / total).clamp(0.0, 1.0) } else { 0.0 },
+            rel_mse,
+            rel_mse_trimmed,
+            trimmed_share,
             energy_ratio: if expected > 0.0 { energy / expected } else { 1.0 },
             deciles: std::array::from_fn(|d| {
                 let part = &self.by_luminance[d * n / 10..(d + 1) * n / 10];

@@ -1,0 +1,8 @@
+//! OpenEXR: linear light as 32-bit floats, out exactly as computed, in from this and other tools.
+
+mod channels;
+mod read;
+mod write;
+
+pub use read::read;
+pub use write::encode;

@@ -1,0 +1,160 @@
+//! An EXR file as a picture.
+
+use super::channels::{Chosen, choose};
+use crate::base::error::{Error, Result};
+use crate::image::{MOST_PIXELS, Picture};
+use ::exr::block::chunk::TileCoordinates;
+use ::exr::block::reader::ChunksReader;
+use ::exr::block::{BlockIndex, UncompressedBlock};
+use ::exr::error::Error as ExrError;
+use ::exr::math::Vec2;
+use ::exr::meta::attribute::{IntegerBounds, SampleType};
+use ::exr::meta::header::Header;
+use ::exr::meta::{BlockDescription, MetaData};
+use ::exr::prelude::f16;
+use std::collections::HashSet;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::path::Path;
+
+/// A block that unpacks to more bytes than this is no picture's: 256 lines of 8,192 pixels with 128 channels.
+const MOST_BLOCK_BYTES: usize = 1 << 30;
+
+/// Reads the colours of an EXR file: its channels `R`, `G`, `B`; else those of the one layer that has them
+/// (`ViewLayer.Combined.R`); else `Y` alone as grey.
+///
+/// 16-bit floats and whole numbers are widened. The picture is the file's display window: pixels of it without data
+/// are 0, data outside it are left. Of several resolutions the largest is taken.
+///
+/// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged, larger than [`MOST_PIXELS`], deep or
+/// without one such picture is [`Error::Input`]. What the header claims is checked before memory is taken for it.
+pub fn read(path: &Path) -> Result<Picture> {
+    let file = File::open(path).map_err(Error::io("read", path))?;
+    picture(BufReader::new(file)).map_err(|why| Error::Input {
+        file: path.to_owned(),
+        line: None,
+        field: String::new(),
+        message: format!("not an EXR picture that can be read: {why}"),
+    })
+}
+
+fn picture(file: impl Read + Seek) -> std::result::Result<Picture, String> {
+    let reader = ::exr::block::read(file, false).map_err(text)?;
+    reader.headers().iter().try_for_each(sane)?;
+    let chosen = choose(reader.headers())?;
+    let part = &reader.headers()[chosen.part];
+    if part.deep {
+        return Err("deep data: flatten it first".into());
+    }
+    let mut canvas = Canvas::new(part, chosen)?;
+    let wanted = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
+        block.layer == chosen.part && tile.is_largest_resolution_level()
+    };
+    reader
+        .filter_chunks(false, wanted)
+        .and_then(|chunks| chunks.decompress_sequential(false, |data, block| canvas.put(data, &block)))
+        .map_err(text)?;
+    Ok(canvas.picture)
+}
+
+/// What an error says.
+fn text(error: impl Display) -> String {
+    error.to_string()
+}
+
+/// Whether what a header claims could be a picture's.
+fn sane(part: &Header) -> std::result::Result<(), String> {
+    area(part.layer_size)?;
+    area(part.shared_attributes.display_window.size)?;
+    let (block, lines) = match part.blocks {
+        BlockDescription::Tiles(tiles) => (tiles.tile_size.width(), tiles.tile_size.height()),
+        BlockDescription::ScanLines => (part.layer_size.width(), part.compression.scan_lines_per_block()),
+    };
+    let bytes = block.saturating_mul(lines).saturating_mul(part.channels.bytes_per_pixel);
+    if bytes > MOST_BLOCK_BYTES {
+        return Err(format!("its blocks unpack to {bytes} bytes; at most {MOST_BLOCK_BYTES} are read"));
+    }
+    Ok(())
+}
+
+/// The number of pixels of a window, if it has any and not too many.
+fn area(Vec2(width, height): Vec2<usize>) -> std::result::Result<usize, String> {
+    width
+        .checked_mul(height)
+        .filter(|pixels| (1..=MOST_PIXELS).contains(pixels))
+        .ok_or_else(|| format!("a window of {width} x {height} pixels; 1 to {MOST_PIXELS} are read"))
+}
+
+/// The picture as it fills.
+struct Canvas {
+    picture: Picture,
+    chosen: Chosen,
+    display: IntegerBounds,
+    /// Where the data begin, in the coordinates of the display window.
+    data: Vec2<i32>,
+    filled: HashSet<Vec2<usize>>,
+}
+
+impl Canvas {
+    fn new(part: &Header, chosen: Chosen) -> std::result::Result<Self, String> {
+        let display = part.shared_attributes.display_window;
+        let Vec2(width, height) = display.size;
+        let side = |n: usize| u32::try_from(n).map_err(text);
+        // Zeroed memory that is never written to costs nothing: a header alone cannot fill it.
+        let pixels = vec![[0.0; 3]; area(display.size)?];
+        Ok(Self {
+            picture: Picture { width: side(width)?, height: side(height)?, pixels },
+            chosen,
+            display,
+            data: part.own_attributes.layer_position,
+            filled: HashSet::new(),
+        })
+    }
+
+    /// Takes the colours of one block.
+    fn put(&mut self, file: &MetaData, block: &UncompressedBlock) -> ::exr::error::Result<()> {
+        let index = block.index;
+        // The table of blocks may say anything: without repeats, as many blocks as there should be are all of them.
+        if index.layer != self.chosen.part || index.level != Vec2(0, 0) || !self.filled.insert(index.pixel_position) {
+            return Err(ExrError::Invalid("its table of blocks".into()));
+        }
+        let channels = &file.headers[index.layer].channels;
+        for line in block.lines(channels) {
+            let rgb = self.chosen.rgb;
+            for colour in (0..3).filter(|&c| rgb[c] == line.location.channel) {
+                let at = line.location.position;
+                match channels.list[line.location.channel].sample_type {
+                    SampleType::F32 => self.fill(at, colour, line.read_samples::<f32>())?,
+                    SampleType::F16 => self.fill(at, colour, line.read_samples::<f16>().map(|x| x.map(f16::to_f32)))?,
+                    SampleType::U32 => {
+                        self.fill(at, colour, line.read_samples::<u32>().map(|x| x.map(|x| x as f32)))?
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the samples of one colour along a line whose first pixel lies at `at` in the data window.
+    fn fill(
+        &mut self,
+        Vec2(x, y): Vec2<usize>,
+        colour: usize,
+        samples: impl Iterator<Item = ::exr::error::Result<f32>>,
+    ) -> ::exr::error::Result<()> {
+        let Vec2(width, height) = self.display.size;
+        let place = |data: i32, offset: usize, display: i32, size: usize| {
+            let place = i64::from(data) + offset as i64 - i64::from(display);
+            usize::try_from(place).ok().filter(|&place| place < size)
+        };
+        let Some(row) = place(self.data.y(), y, self.display.position.y(), height) else { return Ok(()) };
+        for (i, sample) in samples.enumerate() {
+            let sample = sample?;
+            if let Some(column) = place(self.data.x(), x + i, self.display.position.x(), width) {
+                self.picture.pixels[row * width + column][colour] = sample;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,40 @@
+//! A picture as an EXR file.
+
+use crate::base::error::{Error, Result};
+use crate::image::Picture;
+use ::exr::meta::attribute::{Chromaticities, Text};
+use ::exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
+use std::io::Cursor;
+
+/// What linear RGB means here: the primaries and the white of Rec. 709 (ITU-R BT.709).
+const REC_709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.329),
+};
+
+/// The bytes of an EXR file with 32-bit channels R, G and B, losslessly compressed; the same picture gives the same
+/// bytes.
+///
+/// NaN and infinite components are kept. The header says by which program and with which primaries.
+pub fn encode(picture: &Picture) -> Result<Vec<u8>> {
+    picture.check()?;
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let channels = SpecificChannels::rgb(|Vec2(x, y)| {
+        let [r, g, b] = picture.pixels[y * width + x];
+        (r, g, b)
+    });
+    let attributes = LayerAttributes {
+        software_name: Text::new_or_none(concat!("citylights ", env!("CARGO_PKG_VERSION"))),
+        ..LayerAttributes::default()
+    };
+    let mut image = Image::from_layer(Layer::new((width, height), attributes, Encoding::SMALL_LOSSLESS, channels));
+    image.attributes.chromaticities = Some(REC_709);
+    let mut bytes = Vec::new();
+    image
+        .write()
+        .to_buffered(Cursor::new(&mut bytes))
+        .map_err(|e| Error::Invalid(format!("cannot encode the picture as EXR: {e}")))?;
+    Ok(bytes)
+}
