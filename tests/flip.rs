@@ -126,7 +126,7 @@ fn flip_is_0_of_equal_pictures_and_1_of_green_and_blue() {
     assert!(ldr(&whole(Vec3::ONE), &whole(Vec3::splat(f32::INFINITY))).iter().all(|&x| x == 0.0));
     for ppd in [1.0, 67.0, 1000.0] {
         let one = flip::ldr(&[Vec3::ZERO], &[Vec3::ONE], 1, ppd);
-        // Black against white: lightness 100 of the 308 of green and blue by 0.7-th powers, spread by 0.95 / 0.4.
+        // Black against white differs by a lightness of 100, beyond the knee of 0.95.
         assert!(one[0] > 0.9 && one[0] <= 1.0, "{one:?}");
     }
 }
@@ -165,7 +165,7 @@ fn hdr_flip_does_not_depend_on_the_unit_and_takes_any_picture() {
 
 #[test]
 fn a_map_is_pooled_by_its_mean_its_weighted_median_and_its_largest() {
-    // A half of the sum, 5, is reached within the pixel of 4.
+    // In order, 1 and 2 are less than half of the sum; with 3 they are more.
     let pooled = Pooled::of(&[0.0, 4.0, 1.0, 2.0, 3.0, 0.0]);
     assert_eq!(pooled, Pooled { mean: 10.0 / 6.0, weighted_median: 3.0, max: 4.0 });
     assert_eq!(Pooled::of(&[]), Pooled::default());

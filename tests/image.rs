@@ -39,6 +39,53 @@ fn png_is_exposed_encoded_and_clamped() {
 }
 
 #[test]
+fn png_is_read_as_the_linear_values_that_a_screen_shows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("small.png");
+    let steps: Vec<[u8; 3]> = (0..=255).map(|i| [i, 255 - i, 7]).collect();
+    fs::write(&path, png::encode_texels(16, 16, &steps).expect("png")).expect("written");
+    let picture = image::read(&path).expect("read");
+    assert_eq!((picture.width, picture.height), (16, 16));
+    // 188 is half of the light: 0.5029; encoding gives every step back.
+    assert!((picture.pixels[188][0] - 0.5029).abs() < 1e-4, "{:?}", picture.pixels[188]);
+    assert_eq!(fs::read(&path).expect("read"), png::encode(&picture, 1.0).expect("png"));
+    // Grey of 16 bits with opacity, which is ignored.
+    let grey = ::image::ImageBuffer::from_fn(3, 2, |x, _| ::image::LumaA([(x * 30_000) as u16, 5]));
+    grey.save(&path).expect("saved");
+    let picture = png::read(&path).expect("read");
+    assert!((picture.pixels[5][1] - 0.818_51).abs() < 1e-4, "{:?}", picture.pixels[5]);
+}
+
+#[test]
+fn a_damaged_or_enormous_png_is_an_error_and_no_panic() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("cut.png");
+    let whole = png::encode(&night(), 1.0).expect("png");
+    // The last twelve bytes only say that it ends.
+    for length in (0..whole.len() - 12).step_by(11) {
+        fs::write(&path, &whole[..length]).expect("written");
+        let error = image::read(&path).expect_err("cut short");
+        assert!(matches!(error, Error::Input { .. }) && error.to_string().contains("cut.png"), "{error}");
+    }
+    // A header that claims 65,536 x 65,536 pixels, with its checksum.
+    let mut huge = whole.clone();
+    huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let checksum = crc32(&huge[12..29]);
+    huge[29..33].copy_from_slice(&checksum.to_be_bytes());
+    fs::write(&path, &huge).expect("written");
+    let error = png::read(&path).expect_err("too large").to_string();
+    assert!(error.contains("65536 x 65536") && error.contains("at most 67108864"), "{error}");
+    assert!(matches!(png::read(&folder.path().join("none.png")), Err(Error::Io { .. })));
+}
+
+/// The checksum of a PNG chunk (ISO 3309), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0u32, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 })
+    })
+}
+
+#[test]
 fn the_same_picture_gives_the_same_bytes() {
     assert!(png::encode(&night(), 1.0).expect("png") == png::encode(&night(), 1.0).expect("png"));
     let first = exr::encode(&night()).expect("exr");
