@@ -82,6 +82,11 @@ fn colours_are_found_under_the_names_of_other_tools() {
         let bytes = file(vec![plain(&names)], None);
         assert_is_ours(&read(folder.path(), &bytes).expect(prefix), prefix);
     }
+    // Of several layers, Blender's picture is the one called Combined.
+    let noisy = ["ViewLayer.Noisy Image.R", "ViewLayer.Noisy Image.G", "ViewLayer.Noisy Image.B"];
+    let combined = ["ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"];
+    let bytes = file(vec![plain(&noisy), plain(&combined)], None);
+    assert_is_ours(&read(folder.path(), &bytes).expect("combined"), "combined");
     // Plain names win over layers, in whatever part they are.
     let albedo = ["albedo.R", "albedo.G", "albedo.B"];
     let bytes = file(vec![plain(&albedo), plain(&["Z"]), plain(&["R", "G", "B"])], None);
@@ -135,6 +140,8 @@ fn what_would_be_a_guess_is_refused_with_the_channels_there_are() {
     refused(&[&["R", "G", "b"]], &["no channels R, G and B"]);
     refused(&[&["a.R", "a.G", "b.B"]], &["no channels R, G and B", "part 0: a.G"]);
     refused(&[&["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"]], &["2 of its layers", "part 0: b.R"]);
+    let one = ["Combined.R", "Combined.G", "Combined.B"];
+    refused(&[&one, &one], &["2 of its layers"]);
     refused(&[&["R", "G", "B"], &["R", "G", "B"]], &["2 of its layers", "part 1: R"]);
     let many: Vec<String> = (0..60).map(|i| format!("c{i}")).collect();
     refused(&[&many.iter().map(String::as_str).collect::<Vec<_>>()], &["and 20 more"]);

@@ -21,7 +21,7 @@ impl SplitMix {
 }
 
 fn picture(pixel: impl FnMut((usize, usize)) -> DVec3) -> Vec<Vec3> {
-    (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE)).map(pixel).map(|rgb| rgb.as_vec3()).collect()
+    (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE)).map(pixel).map(DVec3::as_vec3).collect()
 }
 
 fn noise(seed: u64, low: f64, high: f64) -> Vec<Vec3> {
@@ -84,7 +84,7 @@ fn ldr_flip_is_the_golden_one() {
     // Mean of sRGB inputs, of the same numbers as linear inputs, pixels (0, 0) and (32, 32) of the sRGB map.
     let golden = [
         (0.449_283_599_9, 0.399_593_561_9, [0.706_965_8, 0.362_887_5]),
-        (0.115_638_047_5, 0.107_686_705_9, [0.074_637_3, 0.110_141_0]),
+        (0.115_638_047_5, 0.107_686_705_9, [0.074_637_3, 0.110_141]),
         (0.181_619_435_5, 0.205_626_830_5, [0.844_275_1, 0.222_381_2]),
     ];
     for ((reference, test), (srgb, linear, pixels)) in pairs().iter().zip(golden) {

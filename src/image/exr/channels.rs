@@ -1,7 +1,8 @@
 //! Which channels of an EXR file are the picture?
 //!
 //! 1. `R`, `G`, `B`: what nearly all tools write.
-//! 2. Else the one layer that has them, as `ViewLayer.Combined.R` in Blender's multilayer files.
+//! 2. Else those of the one layer that has them, or of several the one called `Combined`: `ViewLayer.Combined.R` is
+//!    the picture in Blender's multilayer files, beside `ViewLayer.Noisy Image.R` and others.
 //! 3. Else `Y` alone, as grey.
 //!
 //! Where a step finds several, or none of them finds any, nothing is guessed.
@@ -23,19 +24,27 @@ const LISTED: usize = 40;
 
 /// The picture among these parts, or what is wrong.
 pub(super) fn choose(parts: &[Header]) -> Result<Chosen, String> {
-    let everywhere = |find: &dyn Fn(usize, &[String]) -> Vec<Chosen>| -> Vec<Chosen> {
-        parts.iter().enumerate().flat_map(|(part, header)| find(part, &names(header))).collect()
-    };
-    let plain = everywhere(&|part, names| triple(part, names, "").into_iter().collect());
-    let layered = || everywhere(&|part, names| layers(names).iter().filter_map(|l| triple(part, names, l)).collect());
-    let grey = || everywhere(&|part, names| luminance(part, names).into_iter().collect());
-    let found = [plain].into_iter().chain(std::iter::once_with(layered)).chain(std::iter::once_with(grey));
-    match found.into_iter().find(|found| !found.is_empty()).as_deref() {
-        Some([one]) => Ok(*one),
-        Some(several) => {
+    let names: Vec<Vec<String>> = parts.iter().map(names).collect();
+    let every = || names.iter().enumerate();
+    let mut found: Vec<Chosen> = every().filter_map(|(part, names)| triple(part, names, "")).collect();
+    if found.is_empty() {
+        found = every()
+            .flat_map(|(part, names)| layers(names).into_iter().filter_map(move |layer| triple(part, names, layer)))
+            .collect();
+        let combined = |chosen: &Chosen| is_combined(&names[chosen.part][chosen.rgb[0]]);
+        if found.iter().any(combined) {
+            found.retain(combined);
+        }
+    }
+    if found.is_empty() {
+        found = every().filter_map(|(part, names)| luminance(part, names)).collect();
+    }
+    match found.as_slice() {
+        [one] => Ok(*one),
+        [] => Err(format!("no channels R, G and B, in no layer, and no Y alone. {}", list(parts))),
+        several => {
             Err(format!("{} of its layers could be the picture: save one alone. {}", several.len(), list(parts)))
         }
-        None => Err(format!("no channels R, G and B, in no layer, and no Y alone. {}", list(parts))),
     }
 }
 
@@ -55,6 +64,11 @@ fn layers(names: &[String]) -> BTreeSet<&str> {
     names.iter().filter_map(|name| name.strip_suffix('R')).filter(|prefix| prefix.ends_with('.')).collect()
 }
 
+/// Whether the layer of this red channel is called `Combined`, with whatever before it.
+fn is_combined(red: &str) -> bool {
+    red == "Combined.R" || red.ends_with(".Combined.R")
+}
+
 /// The channel Y where it is luminance alone: neither part of XYZ, nor with the colour differences RY and BY.
 fn luminance(part: usize, names: &[String]) -> Option<Chosen> {
     let has = |wanted: &str| names.iter().any(|name| name == wanted);
@@ -67,8 +81,10 @@ fn luminance(part: usize, names: &[String]) -> Option<Chosen> {
 fn list(parts: &[Header]) -> String {
     let mut all = Vec::new();
     for part in parts {
-        let layer = part.own_attributes.layer_name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-        all.extend(names(part).into_iter().map(|name| format!("{layer}{name}")));
+        let layer = part.own_attributes.layer_name.as_ref().map_or_else(String::new, ToString::to_string);
+        // Blender's names of channels say their part already.
+        let full = |name: String| if name.starts_with(&layer) { name } else { format!("{layer}: {name}") };
+        all.extend(names(part).into_iter().map(full));
     }
     let more = all.len().saturating_sub(LISTED);
     all.truncate(LISTED);

@@ -22,7 +22,7 @@ use std::path::Path;
 const MOST_BLOCK_BYTES: usize = 1 << 30;
 
 /// Reads the colours of an EXR file: its channels `R`, `G`, `B`; else those of the one layer that has them
-/// (`ViewLayer.Combined.R`); else `Y` alone as grey.
+/// (`albedo.R`), or of several the one called `Combined`; else `Y` alone as grey.
 ///
 /// 16-bit floats and whole numbers are widened. The picture is the file's display window: pixels of it without data
 /// are 0, data outside it are left. Of several resolutions the largest is taken.
@@ -128,7 +128,7 @@ impl Canvas {
                     SampleType::F32 => self.fill(at, colour, line.read_samples::<f32>())?,
                     SampleType::F16 => self.fill(at, colour, line.read_samples::<f16>().map(|x| x.map(f16::to_f32)))?,
                     SampleType::U32 => {
-                        self.fill(at, colour, line.read_samples::<u32>().map(|x| x.map(|x| x as f32)))?
+                        self.fill(at, colour, line.read_samples::<u32>().map(|x| x.map(|x| x as f32)))?;
                     }
                 }
             }
