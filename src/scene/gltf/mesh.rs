@@ -2,6 +2,7 @@
 
 use super::Reader;
 use super::accessor::{Indices, Positions};
+use super::document::{Document, Mesh};
 use super::material::{Cover, Palette};
 use super::nodes::{Placed, turned};
 use crate::base::error::Result;
@@ -46,35 +47,51 @@ pub(super) struct Piece<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Calls `visit` with all primitives that have triangles, at each node of `placed` in turn; fails before there are
-    /// too many.
+    /// Fails if there are more triangles than a scene may have.
+    pub(super) fn check_size(&self, placed: &[Placed]) -> Result<()> {
+        let mut total = 0usize;
+        for node in placed {
+            let Some((mesh_id, mesh)) = self.mesh(node)? else { continue };
+            // A primitive without triangles takes time too.
+            total = total.saturating_add(mesh.primitives.len());
+            self.pieces(std::slice::from_ref(node), &mut |piece| {
+                total = total.saturating_add(piece.len());
+                Ok(())
+            })?;
+            if total > MOST_TRIANGLES {
+                return Err(self.wrong(
+                    format_args!("nodes[{}].mesh", node.id),
+                    format_args!(
+                        "with mesh {mesh_id} here the scene has more than {MOST_TRIANGLES} triangles, the most"
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` with all primitives that have triangles, at each node of `placed` in turn.
     pub(super) fn pieces(
         &'a self,
         placed: &'a [Placed],
         visit: &mut dyn FnMut(&Piece<'a>) -> Result<()>,
     ) -> Result<()> {
-        let (document, mut total) = (self.document, 0usize);
         for node in placed {
-            let Some(mesh_id) = document.nodes[node.id as usize].mesh else { continue };
-            let mesh = document.meshes.get(mesh_id as usize).ok_or_else(|| {
-                self.no_such("mesh", mesh_id, document.meshes.len(), &format_args!("nodes[{}].mesh", node.id))
-            })?;
+            let Some((mesh_id, mesh)) = self.mesh(node)? else { continue };
             for primitive in 0..mesh.primitives.len() {
                 let piece = self.piece(node, Place { mesh: mesh_id, primitive })?;
-                // One for a primitive without triangles, which takes time too.
-                total = total.saturating_add(piece.as_ref().map_or(1, Piece::len));
-                if total > MOST_TRIANGLES {
-                    return Err(self.wrong(
-                        format_args!("nodes[{}].mesh", node.id),
-                        format_args!(
-                            "with mesh {mesh_id} here the scene has more than {MOST_TRIANGLES} triangles, the most"
-                        ),
-                    ));
-                }
                 piece.map_or(Ok(()), |piece| visit(&piece))?;
             }
         }
         Ok(())
+    }
+
+    /// The mesh of a node, if it has one.
+    fn mesh(&self, node: &Placed) -> Result<Option<(u32, &'a Mesh)>> {
+        let Document { nodes, meshes, .. } = self.document;
+        let Some(id) = nodes[node.id as usize].mesh else { return Ok(None) };
+        let missing = || self.no_such("mesh", id, meshes.len(), &format_args!("nodes[{}].mesh", node.id));
+        Ok(Some((id, meshes.get(id as usize).ok_or_else(missing)?)))
     }
 
     fn piece(&'a self, node: &'a Placed, place: Place) -> Result<Option<Piece<'a>>> {
@@ -92,8 +109,7 @@ impl<'a> Reader<'a> {
         // The specification has a primitive without positions skipped.
         let Some(position) = primitive.attributes.position else { return Ok(None) };
         let positions = self.positions(position, &format_args!("{place}.attributes.POSITION"))?;
-        let field = format_args!("{place}.indices").to_string();
-        let indices = primitive.indices.map(|id| self.indices(id, &field)).transpose()?;
+        let indices = primitive.indices.map(|id| self.indices(id, &format_args!("{place}.indices"))).transpose()?;
         let vertices = indices.map_or(positions.len(), |indices| indices.len());
         if matches!(mode, Mode::List) && vertices % 3 != 0 {
             let text = format_args!("there are {vertices} vertices; three for each triangle are asked for");

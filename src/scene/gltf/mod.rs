@@ -84,6 +84,7 @@ impl Reader<'_> {
         self.check_asset()?;
         let palette = Palette::read(self)?;
         let placed = self.placed()?;
+        self.check_size(&placed)?;
         let bounds = self.bounds(&placed, &palette)?;
         // f32 has 0.1 mm at 1 km.
         let origin = (0.5 * (bounds[0] + bounds[1]) / 1000.0).round() * 1000.0;
@@ -120,7 +121,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The corners of the box around all reflecting triangles, in the world; fails if there are too many of any.
+    /// The corners of the box around all reflecting triangles, in the world.
     fn bounds(&self, placed: &[Placed], palette: &Palette) -> Result<[DVec3; 2]> {
         let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         self.pieces(placed, &mut |piece| {

@@ -107,8 +107,8 @@ impl Source<'_> {
                 Ok(document) => return deserializer.end().map(|()| document).map_err(|e| self.not_json("", &e)),
                 Err(wrong) => wrong,
             };
-            let path = wrong.path().to_string();
-            Err(self.not_json(if path == "." { "" } else { &path }, wrong.inner()))
+            // The whole document is `.`, a key that is none `?`.
+            Err(self.not_json(wrong.path().to_string().trim_end_matches(['.', '?']), wrong.inner()))
         })
     }
 
