@@ -63,12 +63,12 @@ fn below(stream: &mut Stream, n: usize) -> usize {
     ((stream.uniform64() * n as f64) as usize).min(n.saturating_sub(1))
 }
 
-/// Breaks bytes in one to four places.
+/// Breaks bytes in one to four places, half of the time in one.
 fn broken(stream: &mut Stream, mut bytes: Vec<u8>) -> Vec<u8> {
-    for _ in 0..=below(stream, 4) {
+    for _ in 0..=below(stream, 4) * below(stream, 2) {
         let at = below(stream, bytes.len());
         let end = (at + 1 + below(stream, 40)).min(bytes.len());
-        match below(stream, 8) {
+        match below(stream, 12) {
             0 => bytes.get_mut(at).into_iter().for_each(|byte| *byte ^= 1 << below(stream, 8)),
             1 => bytes.get_mut(at).into_iter().for_each(|byte| *byte = below(stream, 256) as u8),
             2 => drop(bytes.drain(at..end)),
@@ -149,7 +149,7 @@ fn scene() -> File {
     file
 }
 
-/// A recipe with some of everything, small whatever a number is replaced by: a city's lights are.
+/// A recipe with some of everything that is placed by hand.
 const RECIPE: &str = r#"name = "corner"
 seed = 5
 version = 1
@@ -191,6 +191,27 @@ irradiance = 0.25
 kind = "triangle"
 corners = [[0, 310, 0], [4, 310, 0], [4, 310, 4]]
 radiance = 30
+"#;
+
+/// A recipe of a city with every part; its number of lights is set from outside, so that no mutant asks for a million.
+const CITY: &str = r#"name = "city"
+version = 1
+camera = { position = [1, -60, 2], target = [0, 40, 8] }
+[city]
+lights = 700
+[city.buildings]
+height = 20
+[city.lamps]
+spacing = 25
+kind = "spot"
+[city.windows]
+radiance = [5, 50]
+[city.shops]
+[city.signs]
+[city.traffic]
+[city.beacons]
+[city.floodlights]
+[city.moon]
 "#;
 
 /// Reads `wanted` mutants, each named by its number; how many were read and how many refused.
@@ -251,5 +272,16 @@ fn mutated_recipes_are_read_or_refused() {
         "recipe",
         |stream| broken(stream, RECIPE.into()),
         |bytes| recipe::parse(&String::from_utf8_lossy(bytes), "mutant.toml".as_ref(), &Overrides::default()),
+    );
+}
+
+#[test]
+fn mutated_cities_are_read_or_refused() {
+    let few = Overrides { lights: Some(120), ..Overrides::default() };
+    recipe::parse(CITY, "good.toml".as_ref(), &few).unwrap_or_else(|e| panic!("{e}"));
+    run(
+        "city",
+        |stream| broken(stream, CITY.into()),
+        |bytes| recipe::parse(&String::from_utf8_lossy(bytes), "mutant.toml".as_ref(), &few),
     );
 }
