@@ -271,6 +271,26 @@ fn positions_and_indices_are_checked_one_by_one() {
 }
 
 #[test]
+fn what_overflows_to_no_number_is_refused() {
+    // The child's place: 1e300 * 1e300 - 1e300 * 1e300 along x, 0 along y and z.
+    let matrix = json!([1e300, 0, 0, 0, 1e300, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    for (more, field) in [
+        (json!({ "mesh": 0 }), "meshes[0].primitives[0].attributes.POSITION"),
+        (json!({ "camera": 0 }), "nodes[6]"),
+        (json!({ "extensions": { "KHR_lights_punctual": { "light": 0 } } }), "nodes[6]"),
+    ] {
+        let mut file = good();
+        let mut node = json!({ "translation": [1e300, -1e300, 0] });
+        node.as_object_mut().expect("an object").extend(more.as_object().expect("an object").clone());
+        let child = file.push("nodes", node);
+        // Before all others, so that its camera is the first.
+        let parent = file.push("nodes", json!({ "children": [child], "matrix": matrix }));
+        file.json["scenes"][0]["nodes"].as_array_mut().expect("a list").insert(0, json!(parent));
+        check("bad.glb", &file.glb(), field, "NaN");
+    }
+}
+
+#[test]
 fn cycles_of_any_length_are_found() {
     for length in [1, 2, 3, 1_000] {
         let mut file = good();
@@ -311,7 +331,9 @@ fn instances_beyond_what_memory_holds_are_refused_before_they_are_made() {
     let mut file = good();
     let primitive = file.json["meshes"][0]["primitives"][0].clone();
     file.json["meshes"][0]["primitives"] = json!(vec![primitive; 10_000]);
-    (0..1_000).for_each(|_| drop(file.node(json!({ "mesh": 0 }))));
+    for _ in 0..1_000 {
+        file.node(json!({ "mesh": 0 }));
+    }
     let (field, message) = refused("bad.glb", &file.glb());
     assert!(field.starts_with("nodes[") && message.contains("more than 16777216 triangles"), "{field}: {message}");
     // And one whose primitives have no triangles.

@@ -110,7 +110,7 @@ fn what_only_a_recipe_has_is_refused_and_the_other_way_round() {
     refused(&["study", "scaling", "--scene"], &path, "`city`");
 }
 
-fn camera(name: &str, x: f64, extra: Value) -> (Value, Value) {
+fn camera(name: &str, x: f64, extra: &Value) -> (Value, Value) {
     let mut camera = json!({ "type": "perspective", "name": name, "perspective": { "yfov": 0.8, "znear": 0.1 } });
     camera.as_object_mut().expect("an object").extend(extra.as_object().expect("an object").clone());
     (camera, json!({ "name": format!("node of {name}"), "translation": [x, 5, 12] }))
@@ -120,7 +120,7 @@ fn camera(name: &str, x: f64, extra: Value) -> (Value, Value) {
 fn cameras_are_chosen_by_name() {
     let mut file = File::ground();
     for (name, x) in [("left", -3.0), ("right", 3.0)] {
-        let (camera, mut node) = camera(name, x, json!({}));
+        let (camera, mut node) = camera(name, x, &json!({}));
         node["camera"] = json!(file.push("cameras", camera));
         file.node(node);
     }
@@ -143,7 +143,7 @@ fn cameras_are_chosen_by_name() {
 #[test]
 fn a_name_that_two_cameras_bear_is_the_first_ones() {
     let mut file = File::ground();
-    let (camera, mut node) = camera("eye", 7.0, json!({}));
+    let (camera, mut node) = camera("eye", 7.0, &json!({}));
     node["camera"] = json!(file.push("cameras", camera));
     node["name"] = json!("eye");
     file.node(node);
@@ -156,7 +156,7 @@ fn a_name_that_two_cameras_bear_is_the_first_ones() {
 fn the_film_is_the_options_the_exports_or_of_the_cameras_proportions() {
     let film = |perspective: Value, extras: Value, option: Option<(u32, u32)>| {
         let mut file = File::ground();
-        let (camera, mut node) = camera("a", 0.0, json!({ "perspective": perspective, "extras": extras }));
+        let (camera, mut node) = camera("a", 0.0, &json!({ "perspective": perspective, "extras": extras }));
         node["camera"] = json!(file.push("cameras", camera));
         file.node(node);
         let overrides = Overrides { camera: Some("a".into()), resolution: option, ..Overrides::default() };

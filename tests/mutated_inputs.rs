@@ -218,6 +218,7 @@ radiance = [5, 50]
 fn run(format: &str, mutant: impl Fn(&mut Stream) -> Vec<u8>, read: impl Fn(&[u8]) -> Result<Scene>) {
     let (mut read_in, mut refused, begun) = (0, 0, Instant::now());
     let (mut most_bytes, mut longest) = (0, Duration::ZERO);
+    assert!(peak::most(|| drop(vec![1u8; MOST_BYTES])).0 >= MOST_BYTES, "the watch on memory is asleep");
     for number in 0..wanted() {
         let bytes = mutant(&mut Stream::keyed(&[1, number]));
         let start = Instant::now();

@@ -63,7 +63,7 @@ impl File {
 
     /// Adds a mesh of one primitive.
     pub fn mesh(&mut self, primitive: Value) -> usize {
-        self.push("meshes", json!({ "primitives": [primitive] }))
+        self.push("meshes", json!({ "primitives": Value::Array(vec![primitive]) }))
     }
 
     /// Adds a punctual light.

@@ -3,7 +3,7 @@
 use super::Reader;
 use super::document::{CameraEntry, Perspective};
 use super::extras::{CameraExtras, read};
-use super::nodes::{Placed, turned};
+use super::nodes::{Placed, turned, within};
 use crate::base::error::{Error, Result};
 use crate::scene::camera::Camera;
 use crate::scene::file::{FARTHEST, Overrides};
@@ -117,7 +117,7 @@ impl Reader<'_> {
         };
         let to_world = &chosen.node.to_world;
         let eye = turned(to_world.translation) - origin;
-        if !(eye.abs().max_element() <= FARTHEST) {
+        if !within(eye, FARTHEST) {
             let text =
                 format_args!("the camera stands at {eye} from the scene's middle {origin}; {FARTHEST} m is the most");
             return Err(self.wrong(format_args!("nodes[{}]", chosen.node.id), text));

@@ -4,7 +4,7 @@
 
 use super::Reader;
 use super::document::{Cones, PunctualLight};
-use super::nodes::{Placed, turned};
+use super::nodes::{Placed, turned, within};
 use crate::base::error::Result;
 use crate::scene::file::{BRIGHTEST, FARTHEST, NARROWEST_CONE};
 use crate::scene::light::Shape;
@@ -28,7 +28,7 @@ impl Reader<'_> {
             return Ok(Some(Shape::Directional { towards: -self.axis(node)?, irradiance: intensity }));
         }
         let position = turned(node.to_world.translation) - origin;
-        if !(position.abs().max_element() <= FARTHEST) {
+        if !within(position, FARTHEST) {
             let text =
                 format!("the light stands at {position} from the scene's middle {origin}; {FARTHEST} m is the most");
             return Err(self.wrong(format_args!("nodes[{id}]"), text));
@@ -50,7 +50,7 @@ impl Reader<'_> {
     /// Intensity in cd, or irradiance in lx.
     fn intensity(&self, number: u32, light: &PunctualLight) -> Result<Vec3> {
         let (colour, intensity) = (DVec3::from_array(light.color.unwrap_or([1.0; 3])), light.intensity.unwrap_or(1.0));
-        if !(colour.min_element() >= 0.0) {
+        if colour.min_element() < 0.0 {
             return Err(self.wrong_light(number, "color", &format_args!("{colour} is given; 0 or more is asked for")));
         }
         let product = colour * intensity;

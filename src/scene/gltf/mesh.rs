@@ -4,7 +4,7 @@ use super::Reader;
 use super::accessor::{Indices, Positions};
 use super::document::{Document, Mesh};
 use super::material::{Cover, Palette};
-use super::nodes::{Placed, turned};
+use super::nodes::{Placed, turned, within};
 use crate::base::error::Result;
 use crate::scene::file::{FARTHEST, FARTHEST_ORIGIN};
 use glam::{DVec3, Vec3};
@@ -174,7 +174,7 @@ impl Piece<'_> {
             return Err(self.reader.wrong(format_args!("{}.attributes.POSITION", self.place), text));
         }
         let world = turned(self.node.to_world.transform_point3(local.as_dvec3()));
-        if !(world.abs().max_element() <= FARTHEST_ORIGIN) {
+        if !within(world, FARTHEST_ORIGIN) {
             return Err(self.outside(&format_args!("{world}, within {FARTHEST_ORIGIN} of the world's")));
         }
         Ok(world)

@@ -24,6 +24,11 @@ pub(super) fn turned(v: DVec3) -> DVec3 {
     DVec3::new(v.x, -v.z, v.y) + DVec3::ZERO
 }
 
+/// Whether every coordinate is a number within `most` of 0; the extremes of a vector pass over what is none.
+pub(super) fn within(v: DVec3, most: f64) -> bool {
+    v.abs().cmple(DVec3::splat(most)).all()
+}
+
 impl<'a> Reader<'a> {
     /// The scene that the file shows: the one it names, or its first.
     pub(super) fn scene(&self) -> Result<(usize, &'a SceneEntry<'a>)> {
@@ -119,7 +124,7 @@ impl<'a> Reader<'a> {
             });
         }
         let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
-        if !((rotation.length_squared() - 1.0).abs() < UNIT) {
+        if (rotation.length_squared() - 1.0).abs() > UNIT {
             let text = format!("{rotation} is given; a quaternion of length 1 is asked for");
             return Err(self.wrong(format_args!("nodes[{id}].rotation"), text));
         }
