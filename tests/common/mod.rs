@@ -4,6 +4,8 @@
 
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(feature = "gltf")]
+pub mod refused;
 
 use citylights::base::random::{RunKey, Stream};
 use citylights::render::film::Film;
