@@ -163,7 +163,7 @@ fn a_recipe_with_every_table_is_read() {
 
 #[test]
 fn overrides_stand_in_for_the_recipes_words() {
-    let overrides = Overrides { seed: Some(9), resolution: Some((8, 4)), ev100: Some(7.0), lights: None };
+    let overrides = Overrides { seed: Some(9), resolution: Some((8, 4)), ev100: Some(7.0), ..Overrides::default() };
     let scene = parse(GOOD, Path::new("test.toml"), &overrides).expect("a good recipe");
     assert_eq!((scene.seed(), scene.camera().resolution(), scene.ev100()), (9, (8, 4), Some(7.0)));
     assert_ne!(scene.lights(), read(GOOD).expect("a good recipe").lights());

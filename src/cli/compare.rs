@@ -24,7 +24,7 @@ pub(super) const CACHE: &str = "results/.references";
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The recipes
+    /// The scene files: recipes (.toml) or glTF (.glb, .gltf)
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
     /// The strategies, with parameters if any: uniform,influence-pick:picks=4; all by default
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let progress = Progress::new()?;
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
-        // Every recipe is read before anything is measured: a mistake in the last must not cost an hour.
+        // Every scene is read before anything is measured: a mistake in the last must not cost an hour.
         let scenes =
             arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
         let names: Vec<String> = scenes.iter().map(|scene| file_name(scene.name())).collect();

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The recipe
+    /// The scene file: a recipe (.toml) or glTF (.glb, .gltf)
     scene: PathBuf,
     /// The picture: .exr linear, or .png through exposure and sRGB
     #[arg(long, short)]

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The recipe
+    /// The scene file: a recipe (.toml) or glTF (.glb, .gltf)
     scene: PathBuf,
     /// The strategy, with parameters if any: influence-pick:picks=4
     #[arg(long, short, default_value = "influence-tail")]

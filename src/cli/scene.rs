@@ -5,8 +5,8 @@ use crate::base::error::Error;
 use crate::base::names;
 use crate::image::Format;
 use crate::scene::Scene;
+use crate::scene::file::{self, Overrides};
 use crate::scene::light_sampling::LightSampling;
-use crate::scene::recipe::{self, Overrides};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use clap::Args;
@@ -15,13 +15,16 @@ use std::path::Path;
 /// Options of every verb that takes a scene.
 #[derive(Args)]
 pub(super) struct SceneOptions {
-    /// Seed of the city, instead of the recipe's
+    /// Seed of the city, instead of the recipe's; a glTF file has none
     #[arg(long, value_name = "N")]
     scene_seed: Option<u64>,
-    /// Pixels across and down, instead of the recipe's
+    /// Pixels across and down, instead of the file's
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     resolution: Option<(u32, u32)>,
-    /// Exposure value at ISO 100, instead of the recipe's
+    /// The camera of a glTF file, by the name of its node or its own; the first by default
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Exposure value at ISO 100, instead of the file's
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]
     ev100: Option<f32>,
     /// Factor from radiance to displayed value, instead of an exposure value
@@ -40,11 +43,19 @@ pub(super) struct SceneOptions {
 
 impl SceneOptions {
     /// Loads a scene.
-    pub(super) fn load(&self, file: &Path) -> Result<Scene, Error> {
+    pub(super) fn load(&self, path: &Path) -> Result<Scene, Error> {
         // exposure = 1 / (1.2 * 2^EV100)
         let ev100 = self.exposure.map(|exposure| -(1.2 * exposure).log2()).or(self.ev100);
-        let scene =
-            recipe::load(file, &Overrides { seed: self.scene_seed, resolution: self.resolution, ev100, lights: None })?;
+        let scene = file::open(
+            path,
+            &Overrides {
+                seed: self.scene_seed,
+                resolution: self.resolution,
+                ev100,
+                lights: None,
+                camera: self.camera.clone(),
+            },
+        )?;
         for note in scene.notes() {
             say(&format!("{}: {note}", scene.name()));
         }

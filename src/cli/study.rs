@@ -8,7 +8,7 @@ use crate::base::error::{Error, Result};
 use crate::measure::environment;
 use crate::record::store::create_folder;
 use crate::report;
-use crate::scene::recipe::Overrides;
+use crate::scene::file::Overrides;
 use crate::study::{Entry, Options, STUDIES, find};
 use clap::Args;
 use std::cell::OnceCell;
@@ -22,13 +22,13 @@ pub(super) struct Arguments {
     /// The strategies, with parameters if any, instead of the study's own
     #[arg(long, short, value_name = "A,B")]
     strategies: Option<String>,
-    /// Recipes instead of the study's own; may be given more than once (`strategies`, `scaling`)
+    /// Scene files instead of the study's own; may be given more than once (`strategies`, `scaling`)
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// Seed of the cities, instead of the recipes'
     #[arg(long, value_name = "N")]
     scene_seed: Option<u64>,
-    /// Pixels across and down, instead of the recipes'
+    /// Pixels across and down, instead of the files'
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     resolution: Option<(u32, u32)>,
     /// Receivers drawn by area of street and facade, for what needs no rays (`strategies`), or of all there is

@@ -18,7 +18,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The recipes; small generated scenes where none is named
+    /// The scene files, recipes (.toml) or glTF (.glb, .gltf); small generated scenes where none is named
     scenes: Vec<PathBuf>,
     /// The strategies, with parameters if any: uniform,influence-pick:picks=4; all by default
     #[arg(long, short, value_name = "A,B")]

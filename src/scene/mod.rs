@@ -4,9 +4,15 @@
 
 pub mod camera;
 pub mod city;
+#[cfg(any(feature = "recipe", feature = "gltf"))]
+pub mod file;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 pub mod influence;
 pub mod light;
 pub mod light_sampling;
+#[cfg(any(feature = "recipe", feature = "gltf"))]
+mod name;
 pub mod needs;
 pub mod receiver;
 #[cfg(feature = "recipe")]

@@ -26,7 +26,7 @@ use crate::measure::target::Target;
 use crate::record::Machine;
 use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::scene::recipe::Overrides;
+use crate::scene::file::Overrides;
 use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured, STRATEGIES};
 use std::path::PathBuf;
@@ -48,9 +48,9 @@ pub struct Entry {
 /// What a user may change; each study reads what makes sense for it.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Recipes instead of the study's own.
+    /// Scene files instead of the study's own.
     pub scenes: Vec<PathBuf>,
-    /// What is set in place of the recipes' own words.
+    /// What is set in place of the files' own words.
     pub overrides: Overrides,
     /// The strategies, as a list with parameters, instead of the study's own.
     pub strategies: Option<String>,

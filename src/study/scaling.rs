@@ -16,7 +16,7 @@ use crate::measure::trials::Trials;
 use crate::record::study::{Cell, Cells, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::record::{Claim, Summary};
-use crate::scene::recipe::{self, Overrides};
+use crate::scene::file::{self, Overrides};
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
 use crate::visibility::offset::Offset;
@@ -46,15 +46,15 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;
     let strategies = session.strategies(&[])?;
     let files = session.scenes(&[SCENE]);
-    let [file] = &files[..] else {
+    let [path] = &files[..] else {
         return Err(Error::Invalid("study scaling grows one recipe: a single --scene is right".into()));
     };
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
-    recipe::load(file, &Overrides { lights: Some(sizes[0]), ..options.overrides })?;
+    file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
     let mut writer = session.open(vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
-        at_size(session, &mut writer, file, &strategies, lights)?;
+        at_size(session, &mut writer, path, &strategies, lights)?;
     }
     for strategy in &strategies {
         for (column, what, _) in QUANTITIES {
@@ -143,12 +143,12 @@ fn exponents() -> TableRecord {
 fn at_size(
     session: &Session<'_>,
     writer: &mut StudyWriter,
-    file: &Path,
+    path: &Path,
     strategies: &[Configured],
     lights: u64,
 ) -> Result<()> {
     let options = session.options;
-    let scene = recipe::load(file, &Overrides { lights: Some(lights), ..options.overrides })?;
+    let scene = file::open(path, &Overrides { lights: Some(lights), ..options.overrides.clone() })?;
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     // The truth takes a ray for every light: of many lights, at fewer receivers.
     let pixels = match lights {

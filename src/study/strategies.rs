@@ -18,8 +18,8 @@ use crate::record::study::{Cell, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::record::{Claim, Summary, store};
 use crate::scene::Scene;
+use crate::scene::file;
 use crate::scene::receiver::Receiver;
-use crate::scene::recipe;
 use crate::strategy::BuildContext;
 use crate::strategy::erased::AnySampler;
 use crate::strategy::registry::Configured;
@@ -58,7 +58,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let strategies = session.strategies(VARIANTS)?;
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
-        files.iter().map(|file| recipe::load(file, &session.options.overrides)).collect::<Result<_>>()?;
+        files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
     let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
         by_probability(session, &mut writer, scene.clone(), &strategies)?;

@@ -2,6 +2,11 @@
 
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test file uses a part of this module")]
 
+#[cfg(feature = "gltf")]
+pub mod gltf;
+#[cfg(feature = "gltf")]
+pub mod refused;
+
 use citylights::base::random::{RunKey, Stream};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;

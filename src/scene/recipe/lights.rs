@@ -11,17 +11,13 @@
 
 use crate::base::colour::black_body;
 use crate::base::error::{Error, Result};
+use crate::scene::file::{BRIGHTEST, FARTHEST, NARROWEST_CONE};
 use crate::scene::light::{Shape, cone_flux};
+use crate::scene::recipe::near;
 use crate::scene::recipe::table::Table;
-use crate::scene::recipe::{FARTHEST, near};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-/// Greatest value of any photometric quantity: above that f32 would overflow on the way to a pixel.
-const BRIGHTEST: f64 = 1e15;
-
-/// Least outer half-angle of a spot, in degrees: the cosines of its cone are 640 steps of f32.
-const NARROWEST: f64 = 0.5;
 /// Least difference of a spot's half-angles, in degrees; less a little, for the rounding of 0.8 - 0.7.
 const RAMP: f64 = 0.1 - 1e-9;
 
@@ -101,7 +97,7 @@ fn spot(table: &Table) -> Result<Placed> {
     table.only(&["kind", "position", "target", "inner", "outer", "intensity", "flux", "colour", "kelvin"])?;
     let position = table.needed_vector("position", FARTHEST)?;
     let axis = direction(table, "target", table.needed_vector("target", FARTHEST)? - position)?;
-    let outer = table.number("outer", NARROWEST..=90.0, "degrees")?.unwrap_or(45.0);
+    let outer = table.number("outer", NARROWEST_CONE..=90.0, "degrees")?.unwrap_or(45.0);
     let inner = table.number("inner", 0.0..=90.0, "degrees")?.unwrap_or(0.0);
     // The cosine of 90 degrees is 6e-17 in f64 and below 0 in f32 arithmetic elsewhere: hold it at 0.
     let [cos_inner, cos_outer] = [inner, outer].map(|angle| angle.to_radians().cos().max(0.0) as f32);

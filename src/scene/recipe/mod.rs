@@ -27,6 +27,9 @@ use crate::base::error::{Error, Result};
 use crate::scene::camera::Camera;
 use crate::scene::city::bulbs::Bulbs;
 use crate::scene::city::{self, City, Grown, Solid};
+pub use crate::scene::file::Overrides;
+use crate::scene::file::{FARTHEST, FARTHEST_ORIGIN};
+use crate::scene::name;
 use crate::scene::{LightGroup, Parts, Scene};
 use glam::{DVec2, DVec3, Vec3};
 use std::io::Read;
@@ -34,31 +37,10 @@ use std::path::Path;
 use surfaces::Surfaces;
 use table::{Source, Table};
 
-/// What a caller sets in place of the recipe's own words.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Overrides {
-    /// The seed.
-    pub seed: Option<u64>,
-    /// Pixels across and down.
-    pub resolution: Option<(u32, u32)>,
-    /// Exposure value at ISO 100.
-    pub ev100: Option<f32>,
-    /// Lights of the generated city, at the recipe's density: its extent grows with them about the same middle.
-    pub lights: Option<u64>,
-}
-
 /// Larger files are refused: 16 MiB hold about 200,000 lights written by hand.
 const LARGEST_FILE: u64 = 16 << 20;
 /// Most bulbs in all of a recipe's strings.
 const MOST_BULBS: f64 = 1e7;
-/// Coordinates lie within this distance of the frame, in m.
-const FARTHEST: f64 = 1e7;
-
-/// Most characters of a scene's name.
-const LONGEST_NAME: usize = 64;
-/// What a scene's name may not hold, beside what is not printable: it would break a path, a table or a page.
-const NOT_IN_NAMES: [char; 9] = ['<', '>', '|', '/', '\\', '"', '\'', '`', ','];
-
 const TOP: [&str; 14] = [
     "name",
     "version",
@@ -99,6 +81,9 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     if text.trim().is_empty() {
         return Err(source.error(None, "", "the file is empty; a recipe starts with `name`, `seed` and `version = 1`"));
     }
+    if overrides.camera.is_some() {
+        return Err(source.error(None, "camera", "a recipe has one camera: none can be chosen by name"));
+    }
     let document = source.document()?;
     let top = Table::top(&source, &document);
     top.only(&TOP)?;
@@ -109,7 +94,7 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     let seed = top.count("seed", 0..=u64::MAX >> 1)?.unwrap_or(1);
     let seed = overrides.seed.unwrap_or(seed);
     let ev100 = top.number("ev100", -30.0..=40.0, "EV at ISO 100")?.map(|ev| ev as f32);
-    let frame = top.vector("origin", 1e12)?.unwrap_or(DVec3::ZERO);
+    let frame = top.vector("origin", FARTHEST_ORIGIN)?.unwrap_or(DVec3::ZERO);
 
     let grown = top.table("city")?.map(|table| grow(&table, seed, overrides.lights)).transpose()?;
     if grown.is_none() && overrides.lights.is_some() {
@@ -166,19 +151,18 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
 /// The scene's name, which stands in tables, file names and reports.
 fn scene_name(top: &Table) -> Result<String> {
     let name = top.needed_text("name", "the scene's name")?;
-    let length = name.chars().count();
-    // Whatever is not printable, a quote or a backslash would be escaped.
-    let plain = name.escape_debug().eq(name.chars()) && !name.contains(NOT_IN_NAMES);
-    if plain && (1..=LONGEST_NAME).contains(&length) && !name.trim().is_empty() {
+    if name::is_fit(&name) {
         return Ok(name);
     }
-    let shown: String = name.chars().take(LONGEST_NAME).collect();
+    let length = name.chars().count();
+    let shown: String = name.chars().take(name::LONGEST).collect();
     Err(top.wrong(
         "name",
         format!(
-            "\"{}\" of {length} characters is given; 1 to {LONGEST_NAME} printable ones are asked for, not all blank, \
+            "\"{}\" of {length} characters is given; 1 to {} printable ones are asked for, not all blank, \
              without < > | / \\ , and quotes",
-            shown.escape_debug()
+            shown.escape_debug(),
+            name::LONGEST
         ),
     ))
 }

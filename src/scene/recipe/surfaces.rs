@@ -3,8 +3,9 @@
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use crate::scene::city::{Grown, Solid, builtin_materials};
+use crate::scene::file::FARTHEST;
 use crate::scene::recipe::table::Table;
-use crate::scene::recipe::{FARTHEST, inside, near};
+use crate::scene::recipe::{inside, near};
 use crate::scene::{Material, Surface};
 use glam::DVec3;
 

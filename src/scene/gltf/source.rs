@@ -1,0 +1,218 @@
+//! Where do the document and its buffers lie?
+//!
+//! In a `.glb`, in a `.gltf` with base64 within, or beside it. No file outside the scene's folder is read.
+
+use super::document::Document;
+use crate::base::error::{Error, Result};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use std::borrow::Cow;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Most bytes of a file, and of all buffers together: 2 GiB.
+const LARGEST_FILE: u64 = 2 << 30;
+/// Most bytes of a document: 256 MiB hold about two million nodes.
+const LARGEST_DOCUMENT: usize = 256 << 20;
+
+const MAGIC: &[u8; 4] = b"glTF";
+const JSON: u32 = u32::from_le_bytes(*b"JSON");
+const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+
+/// The name of the file that is read, for errors.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a>(pub(super) &'a Path);
+
+impl Source<'_> {
+    /// An error at a path of the document.
+    pub(super) fn wrong(&self, field: impl Display, message: impl Display) -> Error {
+        self.error(None, field, message)
+    }
+
+    fn error(&self, line: Option<usize>, field: impl Display, message: impl Display) -> Error {
+        let (field, message) = (printable(&field.to_string()), printable(&message.to_string()));
+        Error::Input { file: self.0.to_owned(), line, field, message }
+    }
+
+    /// The file's bytes.
+    pub(super) fn read(&self) -> Result<Vec<u8>> {
+        let bytes = read(self.0, LARGEST_FILE + 1)?;
+        if bytes.len() as u64 > LARGEST_FILE {
+            return Err(self.wrong("", format_args!("the file is larger than {LARGEST_FILE} bytes, the most")));
+        }
+        Ok(bytes)
+    }
+
+    /// The JSON of a file, and the binary chunk if it has one.
+    pub(super) fn split<'b>(&self, bytes: &'b [u8]) -> Result<(&'b [u8], Option<&'b [u8]>)> {
+        let is_glb = self.0.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb"));
+        if !is_glb && !bytes.starts_with(MAGIC) {
+            return Ok((bytes, None));
+        }
+        let (header, mut rest) = bytes.split_at_checked(12).ok_or_else(|| {
+            self.wrong("header", format_args!("the file has {} bytes; a .glb begins with 12 of header", bytes.len()))
+        })?;
+        if !header.starts_with(MAGIC) {
+            let found = header[..4].escape_ascii();
+            return Err(self.wrong("header.magic", format_args!("\"{found}\" is given; a .glb begins with \"glTF\"")));
+        }
+        let (version, length) = (number(&header[4..]), number(&header[8..]));
+        if version != 2 {
+            return Err(self.wrong("header.version", format_args!("{version} is given; version 2 is read here")));
+        }
+        if length as usize != bytes.len() {
+            let found = bytes.len();
+            return Err(self.wrong(
+                "header.length",
+                format_args!("{length} bytes are announced and {found} are there: the file is broken off or patched"),
+            ));
+        }
+        let mut chunks = [None; 2];
+        let mut at = 0;
+        while !rest.is_empty() {
+            let refuse = |message: &dyn Display| self.wrong(format_args!("chunks[{at}].length"), message);
+            let (head, after) =
+                rest.split_at_checked(8).ok_or_else(|| refuse(&"is missing: the file ends in a chunk's head"))?;
+            let (length, kind) = (number(head), number(&head[4..]));
+            let (body, after) = after
+                .split_at_checked(length as usize)
+                .ok_or_else(|| refuse(&format_args!("{length} bytes are announced and {} are left", after.len())))?;
+            match (at, kind) {
+                (0, JSON) => chunks[0] = Some(body),
+                (1, BIN) => chunks[1] = Some(body),
+                (0, _) => return Err(self.wrong("chunks[0].type", "the first chunk of a .glb is its JSON")),
+                // The specification has readers skip chunks that they do not know.
+                _ => {}
+            }
+            (rest, at) = (after, at + 1);
+        }
+        let json = chunks[0].ok_or_else(|| self.wrong("chunks[0]", "is missing: a .glb holds a chunk of JSON"))?;
+        Ok((json, chunks[1]))
+    }
+
+    /// The document that JSON spells.
+    pub(super) fn document<'b>(&self, json: &'b [u8]) -> Result<Document<'b>> {
+        if json.len() > LARGEST_DOCUMENT {
+            return Err(self.wrong("", format_args!("the JSON is larger than {LARGEST_DOCUMENT} bytes, the most")));
+        }
+        if json.trim_ascii().is_empty() {
+            return Err(self.wrong("", "the file is empty; a glTF document has at least an `asset` and a `scenes`"));
+        }
+        serde_json::from_slice(json).or_else(|_| {
+            // Once more, slower, keeping track of where.
+            let mut deserializer = serde_json::Deserializer::from_slice(json);
+            let wrong = match serde_path_to_error::deserialize(&mut deserializer) {
+                Ok(document) => return deserializer.end().map(|()| document).map_err(|e| self.not_json("", &e)),
+                Err(wrong) => wrong,
+            };
+            // The whole document is `.`, a key that is none `?`.
+            Err(self.not_json(wrong.path().to_string().trim_end_matches(['.', '?']), wrong.inner()))
+        })
+    }
+
+    fn not_json(&self, field: &str, error: &serde_json::Error) -> Error {
+        let text = error.to_string();
+        let place = format!(" at line {} column {}", error.line(), error.column());
+        let message = text.strip_suffix(&place).unwrap_or(&text);
+        self.error(Some(error.line()), field, format_args!("{message} (column {})", error.column()))
+    }
+
+    /// The bytes of every buffer; `chunk` is the binary chunk of a `.glb`.
+    pub(super) fn buffers<'b>(&self, document: &Document, chunk: Option<&'b [u8]>) -> Result<Vec<Cow<'b, [u8]>>> {
+        let mut total = 0u64;
+        let buffer = |(i, buffer): (usize, &super::document::Buffer)| {
+            let length = buffer.byte_length;
+            total = total.saturating_add(length);
+            if total > LARGEST_FILE {
+                return Err(self.wrong(
+                    format_args!("buffers[{i}].byteLength"),
+                    format_args!("{length} is given; all buffers together may have {LARGEST_FILE} bytes"),
+                ));
+            }
+            let bytes = match (&buffer.uri, chunk) {
+                (Some(uri), _) => Cow::Owned(self.fetch(i, uri, length)?),
+                (None, Some(chunk)) if i == 0 => Cow::Borrowed(chunk),
+                (None, _) => {
+                    let text = "is missing; the name of a file beside this one or data in base64 is asked for";
+                    return Err(self.wrong(format_args!("buffers[{i}].uri"), text));
+                }
+            };
+            if (bytes.len() as u64) < length {
+                let found = bytes.len();
+                return Err(self.wrong(
+                    format_args!("buffers[{i}].byteLength"),
+                    format_args!("{length} bytes are announced and {found} are there"),
+                ));
+            }
+            Ok(bytes)
+        };
+        document.buffers.iter().enumerate().map(buffer).collect()
+    }
+
+    /// At most `length` bytes that a URI names.
+    fn fetch(&self, i: usize, uri: &str, length: u64) -> Result<Vec<u8>> {
+        let refuse = |message: &dyn Display| self.wrong(format_args!("buffers[{i}].uri"), message);
+        if let Some(data) = uri.strip_prefix("data:") {
+            let (_, data) = data
+                .split_once(";base64,")
+                .ok_or_else(|| refuse(&"this data is not in base64, the one way that is read here"))?;
+            return STANDARD.decode(data).map_err(|error| refuse(&format_args!("this is no base64: {error}")));
+        }
+        let path = beside(uri).ok_or_else(|| {
+            let shown: String = uri.chars().take(80).collect();
+            refuse(&format_args!(
+                "\"{shown}\" is given; the name of a file in the scene's folder is asked for, without a scheme, `..` \
+                 or a leading slash"
+            ))
+        })?;
+        let path = self.0.parent().unwrap_or(Path::new("")).join(path);
+        if !path.is_file() {
+            return Err(refuse(&format_args!("there is no file {}", path.display())));
+        }
+        read(&path, length)
+    }
+}
+
+/// At most so many bytes of a file.
+fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(Error::io("read", path))?;
+    file.take(most).read_to_end(&mut bytes).map_err(Error::io("read", path))?;
+    Ok(bytes)
+}
+
+/// The path that a relative URI names, within the folder; `None` for anything else.
+fn beside(uri: &str) -> Option<PathBuf> {
+    let mut decoded = Vec::with_capacity(uri.len());
+    let mut bytes = uri.bytes();
+    while let Some(byte) = bytes.next() {
+        decoded.push(match byte {
+            b'%' => {
+                let mut digit = || char::from(bytes.next()?).to_digit(16);
+                (digit()? * 16 + digit()?) as u8
+            }
+            other => other,
+        });
+    }
+    let path = String::from_utf8(decoded).ok()?;
+    // A colon is a scheme or a drive; a backslash parts folders on some systems.
+    let inside = !path.is_empty()
+        && !path.contains([':', '\\', '\0'])
+        && path.split('/').all(|part| !part.is_empty() && part != "..");
+    inside.then(|| path.into())
+}
+
+fn number(bytes: &[u8]) -> u32 {
+    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+}
+
+/// The text with whatever would disturb a terminal escaped.
+fn printable(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() { out.extend(c.escape_debug()) } else { out.push(c) }
+    }
+    out
+}
