@@ -4,6 +4,7 @@
 //! interrupted.
 
 mod compare;
+mod export;
 mod inspect;
 mod list;
 mod progress;
@@ -41,6 +42,8 @@ enum Verb {
     Reference(reference::Arguments),
     /// What is in a scene, and what can be left out of it
     Inspect(inspect::Arguments),
+    /// Write a scene for another renderer: glTF, pbrt or Mitsuba
+    Export(export::Arguments),
     /// The experiments behind results/, by name
     Study(study::Arguments),
     /// Name the strategies, the scenes or the studies
@@ -66,6 +69,7 @@ pub fn run() -> ExitCode {
         Verb::Render(arguments) => render::run(arguments),
         Verb::Reference(arguments) => reference::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),
+        Verb::Export(arguments) => export::run(arguments),
         Verb::Study(arguments) => study::run(arguments),
         Verb::List(arguments) => list::run(arguments),
         Verb::Report(arguments) => report::run(arguments),
