@@ -148,4 +148,4 @@ impl Smooth {
 }
 
 /// Where the smoothstep starts: the least greatest distance from `u^2`.
-const START: f64 = 0.19;
+const START: f64 = 0.1823;
