@@ -5,7 +5,7 @@ mod common;
 
 use citylights::export::{Target, export};
 use citylights::scene::camera::Camera;
-use citylights::scene::light::Shape;
+use citylights::scene::light::{Light, Shape};
 use citylights::scene::recipe::{Overrides, load};
 use citylights::scene::{Parts, Scene};
 use common::sixteen;
@@ -207,7 +207,7 @@ fn gltf_turns_spots_and_moons_to_within_rounding() {
             found
         };
         let (there, here) =
-            (axes(&mut read.lights.iter().copied()), axes(&mut scene.lights().iter().map(|l| l.shape())));
+            (axes(&mut read.lights.iter().copied()), axes(&mut scene.lights().iter().map(Light::shape)));
         assert!(!here.is_empty() && there.len() == here.len());
         for ((_, axis, cones), (_, want, want_cones)) in there.iter().zip(&here) {
             assert!((*axis - *want).length() < 3e-7, "{axis} for {want}");
