@@ -252,15 +252,18 @@ fn gltf_says_resolution_exposure_and_streets() {
 }
 
 #[test]
-fn gltf_is_cut_into_meshes_of_a_building_or_so() {
-    let file = bytes(&shipped("downtown"), Target::Gltf, "a.glb");
-    let document = gltf::Gltf::from_slice(&file).expect("glTF").document;
-    assert!((100..10_000).contains(&document.meshes().len()), "{} meshes", document.meshes().len());
-    // The ground's triangles reach farther than their cells.
-    let sizes = document.nodes().filter(|node| node.name() == Some("windows")).filter_map(|node| node.mesh());
-    for primitive in sizes.flat_map(|mesh| mesh.primitives().collect::<Vec<_>>()) {
-        let bounds = primitive.bounding_box();
-        assert!((0..3).step_by(2).all(|axis| bounds.max[axis] - bounds.min[axis] < 40.0), "{bounds:?}");
+fn gltf_is_cut_into_meshes_of_a_building_or_so_and_not_too_many() {
+    for (name, widest) in [("first-night", 40.0), ("downtown", 72.0), ("metropolis", 272.0)] {
+        let file = bytes(&shipped(name), Target::Gltf, "a.glb");
+        let document = gltf::Gltf::from_slice(&file).expect("glTF").document;
+        assert!((100..=2048).contains(&document.meshes().len()), "{name}: {} meshes", document.meshes().len());
+        // The ground's triangles reach farther than their cells; windows do not.
+        let meshes = document.nodes().filter(|node| node.name() == Some("windows")).filter_map(|node| node.mesh());
+        for primitive in meshes.flat_map(|mesh| mesh.primitives().collect::<Vec<_>>()) {
+            let bounds = primitive.bounding_box();
+            let size = |axis: usize| bounds.max[axis] - bounds.min[axis];
+            assert!(size(0) < widest && size(2) < widest, "{name}: {bounds:?}");
+        }
     }
 }
 
