@@ -192,6 +192,34 @@ fn gltf_carries_every_bit_of_lights_and_surfaces() {
 }
 
 #[test]
+fn gltf_lights_that_differ_in_one_number_are_not_one() {
+    let point = |colour: [f32; 3]| Shape::Point { position: Vec3::Z, intensity: Vec3::from_array(colour) };
+    let spot = |cos_inner: f32, cos_outer: f32| Shape::Spot {
+        position: Vec3::Z,
+        axis: Vec3::NEG_Z,
+        intensity: Vec3::new(4.0, 3.0, 2.0),
+        cos_inner,
+        cos_outer,
+    };
+    let lights = vec![
+        point([4.0, 3.0, 2.0]),
+        point([4.0, 3.5, 2.0]),
+        point([3.0, 3.0, 2.0]),
+        point([4.0, 3.0, 2.5]),
+        point([8.0, 6.0, 4.0]),
+        point([4.0, 3.0, 2.0]),
+        spot(0.9, 0.5),
+        spot(0.8, 0.5),
+        spot(0.9, 0.4),
+    ];
+    let scene = Scene::new(common::ground(5.0, lights)).expect("a scene");
+    let file = bytes(&scene, Target::Gltf, "a.glb");
+    assert_eq!(sorted(read(&file).lights.iter().map(key)), keys(&scene));
+    let document = gltf::Gltf::from_slice(&file).expect("glTF").document;
+    assert_eq!(document.lights().expect("lights").count(), 8, "equal lights share an entry, others do not");
+}
+
+#[test]
 fn gltf_turns_spots_and_moons_to_within_rounding() {
     for scene in [rolled(), shipped("moonlit"), shipped("plaza")] {
         let read = read(&bytes(&scene, Target::Gltf, "a.glb"));
