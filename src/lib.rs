@@ -34,6 +34,8 @@
 pub mod base;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "gltf")]
+pub mod export;
 #[cfg(feature = "image")]
 pub mod image;
 #[cfg(feature = "measure")]

@@ -5,6 +5,7 @@
 
 mod compare;
 mod diff_image;
+mod export;
 mod inspect;
 mod list;
 mod progress;
@@ -44,6 +45,8 @@ enum Verb {
     DiffImage(diff_image::Arguments),
     /// What is in a scene, and what can be left out of it
     Inspect(inspect::Arguments),
+    /// Write a scene for another renderer: glTF, pbrt or Mitsuba
+    Export(export::Arguments),
     /// The experiments behind results/, by name
     Study(study::Arguments),
     /// Name the strategies, the scenes or the studies
@@ -70,6 +73,7 @@ pub fn run() -> ExitCode {
         Verb::Reference(arguments) => reference::run(arguments),
         Verb::DiffImage(arguments) => diff_image::run(arguments),
         Verb::Inspect(arguments) => inspect::run(arguments),
+        Verb::Export(arguments) => export::run(arguments),
         Verb::Study(arguments) => study::run(arguments),
         Verb::List(arguments) => list::run(arguments),
         Verb::Report(arguments) => report::run(arguments),

@@ -95,6 +95,11 @@ impl SceneOptions {
 /// Refuses a picture that could not be written, before the work instead of after it.
 pub(super) fn check_output(file: &Path) -> Result<(), Error> {
     Format::of(file)?;
+    check_folder(file)
+}
+
+/// Refuses a file that could not be written, before the work instead of after it.
+pub(super) fn check_folder(file: &Path) -> Result<(), Error> {
     if file.is_dir() {
         return Err(Error::Invalid(format!("cannot write {}: it is a folder", file.display())));
     }
