@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The recipe
+    /// The scene: a recipe (.toml) or glTF (.glb, .gltf)
     scene: PathBuf,
     /// The format: gltf (.glb, or .gltf with its buffer embedded), pbrt (.pbrt), mitsuba (.xml and a folder beside it)
     #[arg(long, value_name = "FORMAT", value_parser = target)]

@@ -60,8 +60,8 @@ impl Palette {
         cover.ok_or_else(|| reader.no_such("material", id, self.covers.len(), field))?.ok_or_else(|| {
             reader.wrong(
                 format_args!("materials[{id}].emissiveTexture"),
-                "textures are not read, and this one decides how bright the light is; remove it and give each part of \
-                 its own brightness a material of its own with an `emissiveFactor`",
+                "textures are not read, and this one decides how bright the light is; give each part of its own \
+                 brightness a material of its own with an `emissiveFactor`, as scenes/from_blender.py does",
             )
         })
     }
