@@ -10,8 +10,9 @@ use crate::visibility::stage::Stage;
 use crate::visibility::view::Seen;
 use glam::Vec3;
 
-/// How far, in pixels, the centre of a pixel may be off: the filter of one peer is that wide, and some round in f32.
-const OFF: f64 = 0.01;
+/// How far, in pixels, the centre of a pixel may be off: twice what the narrowest filter of a peer reaches, and far more
+/// than rounding to f32 does.
+const OFF: f64 = 0.02;
 
 /// The places in `receivers`, some or all of the stage's, that can be compared, ascending.
 pub fn clear(stage: &Stage, receivers: &[Receiver]) -> Vec<usize> {

@@ -83,7 +83,7 @@ pub fn measure(
         watch.begin(&peer.name, session.images());
         let outcome = session.run(writer, watch);
         watch.end();
-        std::fs::remove_dir_all(&ground.folder).map_err(Error::io("remove", &ground.folder))?;
+        discard(&ground.folder);
         let (summary, notes) = match outcome {
             Err(Trouble::Stop(error)) => return Err(error),
             Err(Trouble::Missing(why)) => {
@@ -91,6 +91,8 @@ pub fn measure(
                 (Summary { skipped: Some(skipped), ..session.blank() }, Vec::new())
             }
             Err(Trouble::Failed(why)) => {
+                // It is recorded: where this machine keeps its files is nobody's business.
+                let why = why.replace(&format!("{}/", ground.folder.display()), "");
                 let row = Row::failed(session.scene(), peer.name.clone(), session.next_run(), 0, why.clone());
                 writer.write(&row)?;
                 session.rows.push(row);
@@ -108,6 +110,17 @@ pub fn measure(
 /// Where exported scenes, scripts and images lie while they are needed.
 fn scratch(folder: &Path) -> PathBuf {
     folder.join("peers")
+}
+
+/// Removes a folder; one in which a process that was just stopped has a child that still writes, a moment later, and if
+/// that is not enough it stays.
+fn discard(folder: &Path) {
+    for _ in 0..20 {
+        if std::fs::remove_dir_all(folder).is_ok() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
 }
 
 /// What all peers share on a scene.

@@ -92,6 +92,9 @@ impl From<Error> for Trouble {
 const MOST_SAID: u64 = 1 << 24;
 const MOST_KEPT: usize = 1 << 12;
 
+/// How long what a script said may be on its way after its end.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+
 /// How often the user's wish to stop is looked at.
 const BEAT: Duration = Duration::from_millis(50);
 
@@ -106,25 +109,28 @@ pub(super) fn run(
     let lines = lines(&mut running.0);
     let mut heard = Instant::now();
     let failed = |why: String| Trouble::Failed(format!("{why}{}", last_line(&complaints)));
+    let mut status = None;
     let status = loop {
         watch.check()?;
-        let text = match lines.recv_timeout(BEAT) {
-            Ok(text) => text,
-            Err(_) if heard.elapsed() > call.patience => {
+        let text = match (lines.recv_timeout(BEAT), status) {
+            (Ok(text), _) => text,
+            (Err(RecvTimeoutError::Disconnected), Some(status)) => break status,
+            // One that has ended may leave a child of its own that holds the pipe open.
+            (Err(RecvTimeoutError::Timeout), Some(status)) if heard.elapsed() > LAST_WORDS => break status,
+            (Err(_), None) if heard.elapsed() > call.patience => {
                 let seconds = call.patience.as_secs_f64();
                 return Err(failed(format!("said nothing for {seconds} s and was stopped")));
             }
-            Err(end) => match running.0.try_wait() {
-                // One that has ended may leave a child of its own that holds the pipe open.
-                Ok(Some(status)) => break status,
-                Ok(None) => {
-                    if end == RecvTimeoutError::Disconnected {
-                        std::thread::sleep(BEAT);
-                    }
-                    continue;
+            (Err(end), None) => {
+                status = running.0.try_wait().map_err(|error| failed(error.to_string()))?;
+                if status.is_some() {
+                    heard = Instant::now();
+                } else if end == RecvTimeoutError::Disconnected {
+                    std::thread::sleep(BEAT);
                 }
-                Err(error) => return Err(failed(error.to_string())),
-            },
+                continue;
+            }
+            (Err(_), Some(_)) => continue,
         };
         heard = Instant::now();
         let line = serde_json::from_str(&text).map_err(|error| {
