@@ -76,7 +76,8 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
         folder: folder.path(),
     };
     let mut writer = RowWriter::create(folder.path()).expect("begun");
-    let Compared { scene: record, rows, .. } = compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
+    let Compared { scene: record, rows, .. } =
+        compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
     let of = |name: &str| record.summaries.iter().find(|s| s.strategy == name).expect(name);
     let [power, intensity, restir] = ["power", "intensity", "restir"].map(|name| of(name).times_oracle.expect(name));
     println!("x oracle: power {power:.1}, intensity {intensity:.2}, restir {restir:.2}");

@@ -198,7 +198,8 @@ fn a_peer_that_is_too_bright_is_seen_to_be() {
     let (ground, folder) = (ground(), tempfile::tempdir().expect("a folder"));
     let out = folder.path().join("out");
     let three = ["--peer", "mitsuba", "--repeats", "3"];
-    let said = contains("`mitsuba` over the reference: mean 1.5000 ± 0.0000").and(contains("dotted: other renderers").not());
+    let said =
+        contains("`mitsuba` over the reference: mean 1.5000 ± 0.0000").and(contains("dotted: other renderers").not());
     ground.compare("good", "bright.exr", &out, &three).assert().success().stdout(said);
     let run = run(&out);
     let summary = of(&run, "mitsuba");
@@ -213,7 +214,9 @@ fn a_peer_that_is_not_there_is_a_note_and_no_failure() {
     let readme = contains("benches/peers/README.md");
     let out = folder.path().join("module");
     let missing = ground.compare("missing", "reference.exr", &out, &["--peer", "mitsuba"]).assert().success();
-    missing.stdout(contains("skipped: No module")).stderr(contains("peer `mitsuba`: skipped: No module named x").and(readme.clone()));
+    missing
+        .stdout(contains("skipped: No module"))
+        .stderr(contains("peer `mitsuba`: skipped: No module named x").and(readme.clone()));
     assert!(run(&out).finished && rows(&out, "mitsuba").is_empty());
     let out = folder.path().join("python");
     let none = ["--peer", "mitsuba", "--peer-python", "no/such/python"];

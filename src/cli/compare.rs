@@ -85,7 +85,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
                 Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
             );
         }
-        let record = record(arguments, &strategies, &peers, &scenes);
+        let asked = Asked { arguments, strategies: &strategies, peers: &peers, threads };
+        let record = record(&asked, &scenes);
         if threads > environment::cores() {
             say(&format!(
                 "{threads} runs side by side on {} cores: wall times will mean nothing",
@@ -96,12 +97,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
-            session.scene(&stage, file, arguments, &strategies, &peers, threads, &progress)?;
+            session.scene(&stage, file, &asked, &progress)?;
         }
         session.finish()?;
         say(&format!("rows, tables and plots: {}", session.folder.display()));
         Ok(Outcome::Done)
     })
+}
+
+/// What the user asked for, understood.
+struct Asked<'a> {
+    arguments: &'a Arguments,
+    strategies: &'a [Configured],
+    peers: &'a [Peer],
+    threads: u32,
 }
 
 /// A result folder being filled.
@@ -149,16 +158,8 @@ impl Session {
         Ok(Self { folder, record, rows, before: Vec::new() })
     }
 
-    fn scene(
-        &mut self,
-        stage: &Stage,
-        file: &Path,
-        arguments: &Arguments,
-        strategies: &[Configured],
-        peers: &[Peer],
-        threads: u32,
-        progress: &Progress,
-    ) -> anyhow::Result<()> {
+    fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
+        let Asked { arguments, strategies, peers, threads } = *asked;
         let options = Options {
             strategies,
             budget: Budget {
@@ -218,7 +219,8 @@ impl Session {
     }
 }
 
-fn record(arguments: &Arguments, strategies: &[Configured], peers: &[Peer], scenes: &[Scene]) -> RunRecord {
+fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
+    let Asked { arguments, strategies, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
     let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
     RunRecord {

@@ -198,7 +198,7 @@ impl<'a> Session<'a> {
         let Ground { stage, folder, options, .. } = self.ground;
         let kind = self.peer.kind;
         let (scene, path) = (folder.join(kind.scene.1), folder.join(kind.script.0));
-        let exported = export(stage.scene(), kind.scene.0, &scene).map_err(failed)?;
+        let exported = export(stage.scene(), kind.scene.0, &scene).map_err(|error| failed(&error))?;
         exported.write()?;
         for (name, text) in [kind.script, CONTRACT] {
             write_whole(&folder.join(name), text.as_bytes())?;
@@ -262,11 +262,13 @@ impl<'a> Session<'a> {
             return Err(Trouble::Failed(format!("gave times of {times:?} s")));
         }
         let path = self.ground.folder.join(&image.file);
-        let picture = exr::read(&path).map_err(failed)?;
+        let picture = exr::read(&path).map_err(|error| failed(&error))?;
         let (width, height) = self.ground.stage.view().resolution();
         if (picture.width, picture.height) != (width, height) {
             let (w, h) = (picture.width, picture.height);
-            return Err(Trouble::Failed(format!("gave an image of {w} x {h} pixels where {width} x {height} are right")));
+            return Err(Trouble::Failed(format!(
+                "gave an image of {w} x {h} pixels where {width} x {height} are right"
+            )));
         }
         let seen: Vec<Vec3> = self.ground.pixels.iter().map(|&i| Vec3::from(picture.pixels[i as usize])).collect();
         if seen.iter().any(|radiance| !radiance.is_finite()) {
@@ -316,7 +318,8 @@ impl<'a> Session<'a> {
         let images: Vec<&[Vec3]> = self.images.values().map(Vec::as_slice).collect();
         if let Some(found) = Agreement::of(truth, &images, &places) {
             let Agreement { ratio, blocks, beyond_95, beyond_all, worst } = found;
-            let worst = if beyond_all > 0 { format!(" (off by {:+.1} % at most)", 100.0 * worst) } else { String::new() };
+            let worst =
+                if beyond_all > 0 { format!(" (off by {:+.1} % at most)", 100.0 * worst) } else { String::new() };
             notes.push(format!(
                 "`{name}` over the reference: mean {:.4} ± {:.4}; of {blocks} blocks of {SIDE} x {SIDE} pixels {:.1} % lie \
                  outside their 95 % interval and {beyond_all} outside the simultaneous 99 % one{worst}",
@@ -329,6 +332,6 @@ impl<'a> Session<'a> {
     }
 }
 
-fn failed(error: Error) -> Trouble {
+fn failed(error: &Error) -> Trouble {
     Trouble::Failed(error.to_string())
 }

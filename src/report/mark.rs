@@ -61,7 +61,11 @@ impl Mark {
     /// The look of the `nth` curve, dashed with hollow shapes if `hollow`: 35 differ.
     pub(super) fn nth(nth: usize, hollow: bool) -> Self {
         // 7 and 5 have no common divisor: neighbours differ in both.
-        Self { colour: COLOURS[nth % COLOURS.len()], shape: SHAPES[nth % SHAPES.len()], line: if hollow { Line::Dashed } else { Line::Solid } }
+        Self {
+            colour: COLOURS[nth % COLOURS.len()],
+            shape: SHAPES[nth % SHAPES.len()],
+            line: if hollow { Line::Dashed } else { Line::Solid },
+        }
     }
 
     /// Draws the shape about a pixel.

@@ -173,7 +173,9 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
     if summaries.iter().any(|s| is_external(s)) {
-        below.push("external: another renderer's image of the exported scene, its time as the notes above say.".to_owned());
+        below.push(
+            "external: another renderer's image of the exported scene, its time as the notes above say.".to_owned(),
+        );
     }
     for summary in summaries {
         match &summary.claim {
