@@ -5,7 +5,6 @@
 use super::{extras, factored};
 use crate::base::error::Result;
 use crate::scene::Material;
-use ::gltf::json::Index;
 use ::gltf::json::extensions::material::{
     EmissiveStrength, EmissiveStrengthFactor, Material as Extensions, Specular, SpecularColorFactor, SpecularFactor,
 };
@@ -13,18 +12,19 @@ use ::gltf::json::material::{EmissiveFactor, PbrBaseColorFactor, PbrMetallicRoug
 use ::gltf::json::{self, Root};
 use glam::Vec3;
 
-/// Adds what a surface is made of; it reflects on both sides.
-pub(super) fn reflector(material: &Material, root: &mut Root) -> Index<json::Material> {
-    root.push(json::Material {
+/// Adds what a surface is made of, and gives its index; it reflects on both sides.
+pub(super) fn reflector(material: &Material, root: &mut Root) -> u32 {
+    let material = json::Material {
         name: Some(material.name.clone()),
         double_sided: true,
         extras: material.street.then(|| extras("{\"street\":true}")),
         ..lambertian(material.albedo)
-    })
+    };
+    root.push(material).value() as u32
 }
 
-/// Adds what a triangle light is made of; it emits from its front alone.
-pub(super) fn emitter(radiance: Vec3, root: &mut Root) -> Result<Index<json::Material>> {
+/// Adds what a triangle light is made of, and gives its index; it emits from its front alone.
+pub(super) fn emitter(radiance: Vec3, root: &mut Root) -> Result<u32> {
     let (factor, strength) = factored(radiance)?;
     let mut material = lambertian(Vec3::ZERO);
     material.name = Some(format!("emission {}", root.materials.len()));
@@ -32,7 +32,7 @@ pub(super) fn emitter(radiance: Vec3, root: &mut Root) -> Result<Index<json::Mat
     if let (Some(extensions), true) = (&mut material.extensions, strength != 1.0) {
         extensions.emissive_strength = Some(EmissiveStrength { emissive_strength: EmissiveStrengthFactor(strength) });
     }
-    Ok(root.push(material))
+    Ok(root.push(material).value() as u32)
 }
 
 fn lambertian(albedo: Vec3) -> json::Material {

@@ -35,8 +35,8 @@ pub(super) fn export(scene: &Scene, file: &Path) -> Result<Export> {
         ..Root::default()
     };
     camera(scene, &mut root);
-    lights::add(scene, &mut root)?;
     let buffer = triangles::add(scene, &mut root)?;
+    lights::add(scene, &mut root)?;
     let nodes = (0..root.nodes.len() as u32).map(Index::new).collect();
     let extras = scene.ev100().map(|ev100| extras(&format!("{{\"ev100\":{ev100}}}")));
     root.scenes.push(json::Scene { extensions: None, extras, name: Some(scene.name().to_owned()), nodes });

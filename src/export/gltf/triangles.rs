@@ -3,6 +3,9 @@
 //! A mesh holds what stands in one cell of a grid, about a building: renderers that build a hierarchy for each object
 //! and one over all want neither one object nor a hundred thousand. It has a primitive for each material. Corners are
 //! not shared, since each triangle has its own normal.
+//!
+//! Blender's importer looks at all objects for each primitive. So cells grow with the scene until there are few
+//! meshes, and meshes come before the lights.
 
 use super::{materials, place, turned};
 use crate::base::error::Result;
@@ -15,44 +18,46 @@ use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::{Checked, USize64};
 use ::gltf::json::{self, Index, Root};
 use glam::Vec3;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Side of a cell in metres: a city's lots are 28 wide.
+/// Least side of a cell in metres: a city's lots are 28 wide.
 const CELL: f32 = 32.0;
+/// Greatest side of a cell in metres, beyond which only names keep meshes apart.
+const WIDEST_CELL: f32 = 1e6;
+/// Most meshes, where cells can be that wide.
+const MESHES: usize = 2048;
 /// Bytes of a vector.
 const STRIDE: usize = size_of::<Vec3>();
 
-/// The triangles of one mesh, by material.
-type Chunk = BTreeMap<u32, Vec<Corners>>;
-/// Meshes by the order of their groups and by cell.
-type Chunks<'a> = BTreeMap<(usize, [i64; 2]), (&'a str, Chunk)>;
+/// A triangle that is to be in a mesh.
+struct Triangle<'a> {
+    /// The order of its mesh's name among all.
+    order: usize,
+    name: &'a str,
+    material: u32,
+    corners: Corners,
+}
+
+impl Triangle<'_> {
+    /// The mesh's place among all: the order of its name, and the cell in which the triangle's middle lies.
+    fn mesh(&self, side: f32) -> (usize, [i64; 2]) {
+        let middle = (self.corners[0] + self.corners[1] + self.corners[2]) / (3.0 * side);
+        (self.order, [middle.x, middle.y].map(|v| v.floor() as i64))
+    }
+}
 
 /// Adds materials, meshes and their nodes; gives the buffer that they read.
 pub(super) fn add(scene: &Scene, root: &mut Root) -> Result<Vec<u8>> {
-    let mut chunks = Chunks::new();
-    let mut add = |order, name, corners, material: Index<json::Material>| {
-        let (_, chunk) = chunks.entry((order, cell(&corners))).or_insert_with(|| (name, Chunk::new()));
-        chunk.entry(material.value() as u32).or_default().push(corners);
-    };
-    let mut reflectors = HashMap::new();
-    for surface in scene.surfaces() {
-        let material = *reflectors
-            .entry(surface.material)
-            .or_insert_with(|| materials::reflector(&scene.materials()[surface.material as usize], root));
-        add(0, "surfaces", surface.corners, material);
-    }
-    let (mut emitters, mut order) = (HashMap::new(), HashMap::new());
-    for (light, group) in scene.lights().iter().zip(groups(scene)) {
-        let Shape::Triangle { corners, radiance } = light.shape() else { continue };
-        let material = match emitters.entry(radiance.to_array().map(f32::to_bits)) {
-            std::collections::hash_map::Entry::Occupied(known) => *known.get(),
-            std::collections::hash_map::Entry::Vacant(new) => *new.insert(materials::emitter(radiance, root)?),
-        };
-        let next = order.len() + 1;
-        add(*order.entry(group).or_insert(next), group, corners, material);
+    let triangles = triangles(scene, root)?;
+    let side = side(&triangles);
+    let mut meshes: BTreeMap<_, (&str, BTreeMap<u32, Vec<Corners>>)> = BTreeMap::new();
+    for triangle in &triangles {
+        let (_, primitives) = meshes.entry(triangle.mesh(side)).or_insert_with(|| (triangle.name, BTreeMap::new()));
+        primitives.entry(triangle.material).or_default().push(triangle.corners);
     }
     let mut buffer = Buffer { positions: Vec::new(), normals: Vec::new() };
-    for (name, chunk) in chunks.into_values() {
+    for (name, chunk) in meshes.into_values() {
         let primitives = chunk.into_iter().map(|(material, triangles)| buffer.primitive(material, &triangles, root));
         let primitives = primitives.collect();
         let mesh = root.push(json::Mesh {
@@ -67,10 +72,38 @@ pub(super) fn add(scene: &Scene, root: &mut Root) -> Result<Vec<u8>> {
     Ok(buffer.finish(root))
 }
 
-/// The cell in which a triangle's middle lies.
-fn cell(corners: &Corners) -> [i64; 2] {
-    let middle = (corners[0] + corners[1] + corners[2]) / (3.0 * CELL);
-    [middle.x, middle.y].map(|v| v.floor() as i64)
+/// All surfaces and triangle lights, their materials added.
+fn triangles<'a>(scene: &'a Scene, root: &mut Root) -> Result<Vec<Triangle<'a>>> {
+    let mut out = Vec::new();
+    let mut reflectors = HashMap::new();
+    for surface in scene.surfaces() {
+        let material = *reflectors
+            .entry(surface.material)
+            .or_insert_with(|| materials::reflector(&scene.materials()[surface.material as usize], root));
+        out.push(Triangle { order: 0, name: "surfaces", material, corners: surface.corners });
+    }
+    let (mut emitters, mut orders) = (HashMap::new(), HashMap::new());
+    for (light, name) in scene.lights().iter().zip(groups(scene)) {
+        let Shape::Triangle { corners, radiance } = light.shape() else { continue };
+        let material = match emitters.entry(radiance.to_array().map(f32::to_bits)) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => *new.insert(materials::emitter(radiance, root)?),
+        };
+        let next = orders.len() + 1;
+        let order = *orders.entry(name).or_insert(next);
+        out.push(Triangle { order, name, material, corners });
+    }
+    Ok(out)
+}
+
+/// The least side of a cell that makes few enough meshes.
+fn side(triangles: &[Triangle]) -> f32 {
+    let mut side = CELL;
+    let meshes = |side| triangles.iter().map(|triangle| triangle.mesh(side)).collect::<HashSet<_>>().len();
+    while side < WIDEST_CELL && meshes(side) > MESHES {
+        side *= 2.0;
+    }
+    side
 }
 
 /// Positions, and normals after them.
