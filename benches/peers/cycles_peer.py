@@ -105,6 +105,10 @@ def load(path, light_tree):
     scene = bpy.context.scene
     scene.world = bpy.data.worlds.new("black")
     scene.world.color = (0, 0, 0)
+    # A new world may come with nodes, and those with a grey that shows as light on every wall that sees the sky.
+    for node in scene.world.node_tree.nodes if scene.world.node_tree else ():
+        if node.type == "BACKGROUND":
+            node.inputs["Color"].default_value, node.inputs["Strength"].default_value = (0, 0, 0, 1), 0
     cameras = [thing for thing in scene.objects if thing.type == "CAMERA"]
     scene.camera = cameras[0]
     # Farther than any scene: what lies beyond is cut off.
