@@ -40,6 +40,8 @@ pub mod export;
 pub mod image;
 #[cfg(feature = "measure")]
 pub mod measure;
+#[cfg(feature = "peers")]
+pub mod peers;
 #[cfg(feature = "measure")]
 pub mod record;
 pub mod render;

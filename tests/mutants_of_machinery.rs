@@ -364,7 +364,7 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
-    use citylights::measure::compare::{Options, compare};
+    use citylights::measure::compare::{Compared, Options, compare};
     use citylights::measure::observer::Unobserved;
     use citylights::measure::plan::Budget;
     use citylights::record::store::RowWriter;
@@ -375,7 +375,8 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let options = Options { strategies: &strategies, budget, repeats: 3, seed: 1, threads: 1, cache: &cache, folder };
     let mut rows = RowWriter::create(folder).expect("a file");
-    let (scene, rows) = compare(&stage, "sixteen", &options, &[], &mut rows, &Unobserved).expect("a comparison");
+    let Compared { scene, rows, .. } =
+        compare(&stage, "sixteen", &options, &[], &mut rows, &Unobserved).expect("a comparison");
     let error = |i: usize| scene.summaries[i].error.as_deref();
     assert_eq!(error(0), None);
     assert!(error(1).is_some_and(|text| text.contains("failed check `weights`")), "{:?}", error(1));

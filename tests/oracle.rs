@@ -6,7 +6,7 @@ mod common;
 #[path = "common/runs.rs"]
 mod runs;
 
-use citylights::measure::compare::{Options as Comparison, compare};
+use citylights::measure::compare::{Compared, Options as Comparison, compare};
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::Claim;
@@ -76,7 +76,8 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
         folder: folder.path(),
     };
     let mut writer = RowWriter::create(folder.path()).expect("begun");
-    let (record, rows) = compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
+    let Compared { scene: record, rows, .. } =
+        compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
     let of = |name: &str| record.summaries.iter().find(|s| s.strategy == name).expect(name);
     let [power, intensity, restir] = ["power", "intensity", "restir"].map(|name| of(name).times_oracle.expect(name));
     println!("x oracle: power {power:.1}, intensity {intensity:.2}, restir {restir:.2}");

@@ -415,6 +415,37 @@ fn a_plot_of_one_budget_and_one_run_is_drawn() {
 }
 
 #[test]
+fn another_renderer_stands_apart_and_leaves_the_others_as_they_are() {
+    let (mut run, mut rows) = record();
+    let before = report::plot(&run.scenes[0], &rows).expect("drawn");
+    let renderer = "Cycles in Blender 5".to_owned();
+    let claim = Claim::External { renderer };
+    let peer = Maker { strategy: "cycles", claim, setup_s: 1.5, pass_s: 0.04, v: 0.9, bias2: 0.02 };
+    run.scenes[0].summaries.push(peer.summary());
+    rows.extend(peer.rows());
+    let table = report::table(&run, &run.scenes[0], &rows);
+    let line = table.lines().find(|line| line.trim_start().starts_with("cycles")).expect("a row");
+    assert!(line.contains("external") && line.contains("0.0200 ±"), "{line}");
+    assert!(table.contains("cycles: Cycles in Blender 5."), "{table}");
+    let work = table.split("\nWork\n").nth(1).expect("a table of work").split("\nWork of choosing").next();
+    assert!(!work.expect("text").contains("cycles"), "nobody counted its work");
+    assert!(table.contains("over the 3 unbiased rows"), "it is not held to be unbiased");
+    let after = report::plot(&run.scenes[0], &rows).expect("drawn");
+    assert!(after.contains("dotted: other renderers") && !before.contains("dotted"));
+    let colours = |svg: &str, name: &str| {
+        let legend = svg.lines().position(|line| line.trim() == name).expect("in the legend");
+        let drawn: Vec<String> = svg
+            .lines()
+            .take(legend)
+            .filter(|line| line.contains("<polygon") || line.contains("<circle"))
+            .map(str::to_owned)
+            .collect();
+        drawn.last().and_then(|line| line.split("fill=\"").nth(1)?.split('"').next().map(str::to_owned))
+    };
+    assert_eq!(colours(&before, "uniform"), colours(&after, "uniform"), "a strategy's colour changed");
+}
+
+#[test]
 fn an_edited_page_or_row_is_drift() {
     let folder = tempfile::tempdir().expect("a folder");
     stored(folder.path());

@@ -4,11 +4,12 @@ use super::progress::Progress;
 use super::scene::{SceneOptions, pool, threads};
 use super::{Outcome, command, print, say};
 use crate::base::error::{Error, Result};
-use crate::measure::compare::{Options, compare};
+use crate::measure::compare::{Compared, Options, compare};
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
 use crate::measure::reference::scene_hash;
+use crate::peers::{self, Peer};
 use crate::record::store::{RUN_FILE, RowWriter, create_folder, file_name, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
 use crate::report;
@@ -18,6 +19,7 @@ use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
 use crate::visibility::stage::Stage;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Where finished tiles of references are kept.
 pub(super) const CACHE: &str = "results/.references";
@@ -40,6 +42,17 @@ pub(super) struct Arguments {
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
+    /// Another renderer, on the exported scene, in the same table: mitsuba, cycles, cycles:light-tree=off; more than once
+    /// for more than one. benches/peers/README.md says how to install them
+    #[arg(long = "peer", value_name = "NAME")]
+    peers: Vec<String>,
+    /// The Python that has the peers; by default what CITYLIGHTS_PYTHON names, else benches/peers/.venv/bin/python where
+    /// that is, else python3
+    #[arg(long, value_name = "FILE")]
+    peer_python: Option<PathBuf>,
+    /// Seconds that a peer may take from one image to the next
+    #[arg(long, value_name = "S", default_value = "1800", value_parser = seconds)]
+    peer_patience: f64,
     /// The result folder; a new one under results/ by default. An interrupted comparison there is resumed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -59,6 +72,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let every = STRATEGIES.iter().map(|entry| entry.info().name).collect::<Vec<_>>().join(",");
     let strategies = parse_list(arguments.strategies.as_deref().unwrap_or(&every))?;
+    let peers = peers(&arguments.peers)?;
     let progress = Progress::new()?;
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
@@ -71,7 +85,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
                 Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
             );
         }
-        let record = record(arguments, &strategies, &scenes);
+        let asked = Asked { arguments, strategies: &strategies, peers: &peers, threads };
+        let record = record(&asked, &scenes);
         if threads > environment::cores() {
             say(&format!(
                 "{threads} runs side by side on {} cores: wall times will mean nothing",
@@ -82,12 +97,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
-            session.scene(&stage, file, arguments, &strategies, threads, &progress)?;
+            session.scene(&stage, file, &asked, &progress)?;
         }
         session.finish()?;
         say(&format!("rows, tables and plots: {}", session.folder.display()));
         Ok(Outcome::Done)
     })
+}
+
+/// What the user asked for, understood.
+struct Asked<'a> {
+    arguments: &'a Arguments,
+    strategies: &'a [Configured],
+    peers: &'a [Peer],
+    threads: u32,
 }
 
 /// A result folder being filled.
@@ -135,15 +158,8 @@ impl Session {
         Ok(Self { folder, record, rows, before: Vec::new() })
     }
 
-    fn scene(
-        &mut self,
-        stage: &Stage,
-        file: &Path,
-        arguments: &Arguments,
-        strategies: &[Configured],
-        threads: u32,
-        progress: &Progress,
-    ) -> anyhow::Result<()> {
+    fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
+        let Asked { arguments, strategies, peers, threads } = *asked;
         let options = Options {
             strategies,
             budget: Budget {
@@ -158,15 +174,33 @@ impl Session {
             folder: &self.folder,
         };
         let file = file.display().to_string();
-        let (scene, rows) =
-            compare(stage, &file, &options, &self.before, &mut self.rows, progress).inspect_err(|error| {
-                if matches!(error, Error::Interrupted) {
-                    say(&format!(
-                        "finished rows are in {0}; the same command with --out {0} goes on from there",
-                        self.folder.display()
-                    ));
-                }
-            })?;
+        let resumable = |error: &Error| {
+            if matches!(error, Error::Interrupted) {
+                let folder = self.folder.display();
+                say(&format!("finished rows are in {folder}; the same command with --out {folder} goes on from there"));
+            }
+        };
+        let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
+        let Compared { mut scene, mut rows, truth } = compared.inspect_err(resumable)?;
+        let options = peers::measure::Options {
+            peers,
+            python: &python(arguments.peer_python.as_deref()),
+            spp: &sample_counts(arguments.budget.unwrap_or(64)),
+            runs: arguments.repeats.min(PEER_RUNS),
+            seed: arguments.seed,
+            folder: &self.folder,
+            patience: Duration::from_secs_f64(arguments.peer_patience),
+        };
+        let others = peers::measure::measure(stage, &truth, &options, &self.before, &mut self.rows, progress);
+        let others = others.inspect_err(resumable)?;
+        for summary in &others.summaries {
+            if let Some(why) = summary.skipped.as_ref().or(summary.error.as_ref()) {
+                say(&format!("peer `{}`: {why}", summary.strategy));
+            }
+        }
+        scene.notes.extend(others.notes);
+        scene.summaries.extend(others.summaries);
+        rows.extend(others.rows);
         self.record.scenes.push(scene);
         write_run(&self.folder, &self.record)?;
         // This scene is finished, even where others are still to come.
@@ -185,14 +219,16 @@ impl Session {
     }
 }
 
-fn record(arguments: &Arguments, strategies: &[Configured], scenes: &[Scene]) -> RunRecord {
+fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
+    let Asked { arguments, strategies, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
     let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}; budget {:?}, {} s; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s; {} runs; seed {}; {}",
             scenes.join(" "),
             strategies.join(" "),
+            peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
             arguments.budget,
             arguments.seconds,
             arguments.repeats,
@@ -212,6 +248,30 @@ fn record(arguments: &Arguments, strategies: &[Configured], scenes: &[Scene]) ->
         finished: false,
         scenes: Vec::new(),
     }
+}
+
+/// Most runs of a peer: they are dear, and each is a whole image at every sample count.
+const PEER_RUNS: u32 = 8;
+
+fn peers(given: &[String]) -> Result<Vec<Peer>> {
+    let peers = given.iter().map(|text| Peer::parse(text)).collect::<Result<Vec<_>>>()?;
+    let twice = peers.iter().enumerate().find(|(i, peer)| peers[..*i].iter().any(|other| other.name() == peer.name()));
+    match twice {
+        Some((_, peer)) => Err(Error::Invalid(format!("the peer `{}` is named twice", peer.name()))),
+        None => Ok(peers),
+    }
+}
+
+/// Sample counts of a peer: powers of 4 up to `most`.
+fn sample_counts(most: u32) -> Vec<u32> {
+    (0..16).map(|power| 1 << (2 * power)).take_while(|&spp| spp <= most).collect()
+}
+
+/// The Python that peers are run with.
+fn python(given: Option<&Path>) -> PathBuf {
+    let own = || Some(PathBuf::from("benches/peers/.venv/bin/python")).filter(|file| file.exists());
+    let named = given.map(Path::to_owned).or_else(|| std::env::var_os("CITYLIGHTS_PYTHON").map(PathBuf::from));
+    named.or_else(own).unwrap_or_else(|| "python3".into())
 }
 
 /// Parses a number of CPU seconds.

@@ -1,5 +1,6 @@
 //! The main job: all strategies on one scene, interleaved, error against time.
 
+use super::errors::Truth;
 use super::films::Films;
 use super::gate::Gate;
 use super::observer::Observer;
@@ -7,7 +8,7 @@ use super::once::Once;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
 use super::reference::{Reference, scene_hash};
-use super::summary::{blank, summarise};
+use super::summary::{blank, counts, summarise};
 use super::target::Target;
 use super::trials::shuffle;
 use crate::base::error::{Error, Result};
@@ -41,6 +42,16 @@ pub struct Options<'a> {
     pub folder: &'a Path,
 }
 
+/// What a comparison found on one scene.
+pub struct Compared {
+    /// The scene, with a summary of each strategy.
+    pub scene: SceneRecord,
+    /// All rows.
+    pub rows: Vec<Row>,
+    /// What errors were taken against, at the receivers of [`Target::new`].
+    pub truth: Truth,
+}
+
 /// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
 /// repeated: runs whose image is kept (see [`Films`]).
 pub fn compare(
@@ -50,7 +61,7 @@ pub fn compare(
     before: &[Row],
     rows: &mut RowWriter,
     watch: &dyn Observer,
-) -> Result<(SceneRecord, Vec<Row>)> {
+) -> Result<Compared> {
     let target = Target::new(stage);
     let pilots = pilots(&target, options, watch)?;
     let ladders: Vec<Vec<u32>> = options
@@ -101,7 +112,8 @@ pub fn compare(
     for (strategy, _) in whole_frames {
         notes.push(format!("`{}` saw no more of its frame than the receivers measured", strategy.name()));
     }
-    Ok((record(&target, file, &reference, notes, summaries), comparison.rows))
+    let (scene, rows) = (record(&target, file, &reference, notes, summaries), comparison.rows);
+    Ok(Compared { scene, rows, truth: reference.truth })
 }
 
 fn record(
@@ -309,6 +321,7 @@ impl Comparison<'_> {
             mine.filter(|row| row.passes == last && self.films.contains_key(&(index, row.run))).collect();
         rows.sort_by_key(|row| row.run);
         let images: Vec<&[Vec3]> = rows.iter().map(|row| self.films[&(index, row.run)].as_slice()).collect();
-        summarise(strategy, pilot, &self.reference.truth, &rows, &images)
+        let blank = Summary { counts: counts(pilot.counts), ..blank(strategy) };
+        summarise(blank, &self.reference.truth, &rows, &images)
     }
 }

@@ -3,6 +3,7 @@
 use super::target::places;
 use crate::base::colour::luminance;
 use crate::base::rel_mse::{Means, RelMse};
+use crate::record::Row;
 use glam::{DVec3, Vec3};
 
 /// The exact radiance of the measured receivers: two independent halves, equal where the sum is free of noise.
@@ -32,6 +33,21 @@ pub struct Errors {
     pub deciles: [f64; 10],
 }
 
+impl Errors {
+    /// The row with these errors in it.
+    pub fn written_to(self, row: Row) -> Row {
+        Row {
+            mse: self.mse,
+            rel_mse: self.rel_mse,
+            rel_mse_trimmed: self.rel_mse_trimmed,
+            trimmed_share: self.trimmed_share,
+            energy_ratio: self.energy_ratio,
+            deciles: self.deciles,
+            ..row
+        }
+    }
+}
+
 impl Truth {
     /// From two independent halves.
     pub fn new(halves: [Vec<Vec3>; 2]) -> Self {
@@ -48,6 +64,12 @@ impl Truth {
         Self::new([few(&self.halves[0]), few(&self.halves[1])])
     }
 
+    /// The truth at some of its receivers, with the epsilon of all of them.
+    pub fn only(&self, places: &[usize]) -> Self {
+        let some = |half: &Vec<Vec3>| places.iter().map(|&i| half[i]).collect();
+        Self { epsilon: self.epsilon, ..Self::new([some(&self.halves[0]), some(&self.halves[1])]) }
+    }
+
     /// The best estimate, in cd/m^2.
     pub fn mean(&self) -> &[Vec3] {
         &self.mean
@@ -56,6 +78,12 @@ impl Truth {
     /// The epsilon of relMSE, per channel.
     pub fn epsilon(&self) -> Vec3 {
         self.relative.epsilon()
+    }
+
+    /// Variance of the luminance of [`mean`](Self::mean) at a receiver, from the two halves; 0 for an exact sum.
+    pub fn variance(&self, i: usize) -> f64 {
+        // The variance of the mean of two is a quarter of the square of their difference, on average.
+        f64::from(luminance(self.halves[0][i]) - luminance(self.halves[1][i])).powi(2) / 4.0
     }
 
     /// relMSE of the mean of the halves about what it estimates; 0 for an exact sum.
@@ -69,9 +97,8 @@ impl Truth {
 
     /// Standard error of the mean luminance as a share of it; 0 for an exact sum.
     pub fn own_energy_error(&self) -> f64 {
-        // Receivers are sampled independently: each difference of halves is four times the variance of their mean.
-        let difference = |i: usize| f64::from(luminance(self.halves[0][i]) - luminance(self.halves[1][i]));
-        let variance: f64 = (0..self.mean.len()).map(|i| difference(i).powi(2) / 4.0).sum();
+        // Receivers are sampled independently.
+        let variance: f64 = (0..self.mean.len()).map(|i| self.variance(i)).sum();
         let total: f64 = self.mean.iter().map(|&x| f64::from(luminance(x))).sum();
         if total > 0.0 { variance.sqrt() / total } else { 0.0 }
     }

@@ -50,23 +50,14 @@ impl Once<'_> {
             let ((), block) = timed(|| plan.run(passes - film.passes(), &mut film));
             spent += block;
             let errors = truth.errors(&film.image());
-            each(Row {
-                scene: scene.clone(),
-                strategy: name.clone(),
-                run: key.run,
-                passes,
+            let row = Row {
                 setup_cpu_s: setup.cpu,
                 cpu_s: spent.cpu,
                 wall_s: spent.wall,
                 heap_bytes: sampler.heap_bytes() as u64,
-                mse: errors.mse,
-                rel_mse: errors.rel_mse,
-                rel_mse_trimmed: errors.rel_mse_trimmed,
-                trimmed_share: errors.trimmed_share,
-                energy_ratio: errors.energy_ratio,
-                deciles: errors.deciles,
-                error: None,
-            })?;
+                ..Row::blank(scene.clone(), name.clone(), key.run, passes)
+            };
+            each(errors.written_to(row))?;
         }
         Ok(Some(film.image()))
     }

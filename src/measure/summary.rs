@@ -1,7 +1,6 @@
 //! What do all runs of a strategy say together?
 
 use super::errors::Truth;
-use super::plan::Pilot;
 use crate::base::statistics::Moments;
 use crate::record::{Claim, Counts, Interval, Row, Summary};
 use crate::render::counts as render;
@@ -15,42 +14,18 @@ const CONFIDENCE: f64 = 0.95;
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub fn blank(strategy: &Configured) -> Summary {
     let info = strategy.info();
-    let none = Interval { mean: f64::NAN, half_width: f64::NAN };
-    Summary {
-        strategy: strategy.name().to_owned(),
-        claim: match (info.role, info.claim) {
-            (Role::Floor, _) => Claim::Floor,
-            (Role::Ceiling, _) => Claim::Ceiling,
-            (Role::Oracle, _) => Claim::Oracle,
-            (Role::Choosing, StrategyClaim::Unbiased) => Claim::Unbiased,
-            (Role::Choosing, StrategyClaim::Biased(why)) => Claim::Biased { why: why.to_owned() },
-        },
-        chooses: info.role == Role::Choosing,
-        runs: 0,
-        passes: 0,
-        setup_cpu_s: f64::NAN,
-        cpu_s: f64::NAN,
-        wall_s: f64::NAN,
-        heap_bytes: 0,
-        rel_mse: none,
-        mse: none,
-        rel_mse_trimmed: none,
-        rel_bias2: none,
-        mean_bias: none,
-        detectable_bias: f64::NAN,
-        variance_seconds: f64::NAN,
-        times_oracle: None,
-        receivers: None,
-        counts: Counts::default(),
-        unstable: false,
-        skipped: None,
-        error: None,
-    }
+    let claim = match (info.role, info.claim) {
+        (Role::Floor, _) => Claim::Floor,
+        (Role::Ceiling, _) => Claim::Ceiling,
+        (Role::Oracle, _) => Claim::Oracle,
+        (Role::Choosing, StrategyClaim::Unbiased) => Claim::Unbiased,
+        (Role::Choosing, StrategyClaim::Biased(why)) => Claim::Biased { why: why.to_owned() },
+    };
+    Summary::blank(strategy.name().to_owned(), claim, info.role == Role::Choosing)
 }
 
-/// The summary of a strategy from the rows and images of its runs at its largest budget, in the same order.
-pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&Row], images: &[&[Vec3]]) -> Summary {
-    let mut summary = blank(strategy);
+/// A summary with the figures of the rows and images of its runs at the largest budget, in the same order.
+pub fn summarise(mut summary: Summary, truth: &Truth, rows: &[&Row], images: &[&[Vec3]]) -> Summary {
     if rows.is_empty() {
         return summary;
     }
@@ -75,7 +50,6 @@ pub fn summarise(strategy: &Configured, pilot: &Pilot, truth: &Truth, rows: &[&R
     summary.rel_bias2 = spread.rel_bias2();
     summary.variance_seconds = spread.rel_variance() * summary.cpu_s;
     summary.unstable = unstable(rows);
-    summary.counts = counts(pilot.counts);
     summary
 }
 

@@ -8,7 +8,7 @@ use super::errors::Truth;
 use super::observer::Observer;
 use super::once::Once;
 use super::plan::{self, Budget, Pilot};
-use super::summary::{blank, summarise};
+use super::summary::{blank, counts, summarise};
 use super::target::Target;
 use crate::base::error::{Error, Result};
 use crate::base::random::{RunKey, Stream};
@@ -77,7 +77,8 @@ impl Trials<'_> {
                 let mine = || done.iter().filter(|done| done.strategy == i);
                 let rows: Vec<&Row> = mine().map(|done| &done.row).collect();
                 let images: Vec<&[Vec3]> = mine().map(|done| done.image.as_slice()).collect();
-                summarise(strategy, pilot, self.truth, &rows, &images)
+                let blank = Summary { counts: counts(pilot.counts), ..blank(strategy) };
+                summarise(blank, self.truth, &rows, &images)
             }
         };
         Ok(strategies.iter().enumerate().map(summary).collect())

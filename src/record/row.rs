@@ -66,6 +66,11 @@ pub struct Row {
 impl Row {
     /// A row that failed: no numbers, only where and why.
     pub fn failed(scene: String, strategy: String, run: u32, passes: u32, error: String) -> Self {
+        Self { error: Some(error), ..Self::blank(scene, strategy, run, passes) }
+    }
+
+    /// A row without its numbers yet.
+    pub fn blank(scene: String, strategy: String, run: u32, passes: u32) -> Self {
         let none = f64::NAN;
         Self {
             scene,
@@ -82,7 +87,7 @@ impl Row {
             trimmed_share: none,
             energy_ratio: none,
             deciles: [none; 10],
-            error: Some(error),
+            error: None,
         }
     }
 

@@ -33,6 +33,18 @@ pub enum Claim {
     Ceiling,
     /// Chooses by what it cannot know without paying for it (`oracle`): the least error of any choice, never timed.
     Oracle,
+    /// Another renderer's image of the exported scene: it says nothing here, its bias is measured.
+    External {
+        /// Its name and version, as far as they are known.
+        renderer: String,
+    },
+}
+
+impl Claim {
+    /// Whether its bias is measured and printed: it claims one, or claims nothing.
+    pub fn may_be_biased(&self) -> bool {
+        matches!(self, Self::Biased { .. } | Self::External { .. })
+    }
 }
 
 /// Work counted in a separate pass of the same code; counts carry over between machines, times do not.
@@ -133,4 +145,35 @@ pub struct Summary {
     pub skipped: Option<String>,
     /// Why it failed.
     pub error: Option<String>,
+}
+
+impl Summary {
+    /// A summary without figures: of what was skipped or failed, or before its runs.
+    pub fn blank(strategy: String, claim: Claim, chooses: bool) -> Self {
+        let none = Interval { mean: f64::NAN, half_width: f64::NAN };
+        Self {
+            strategy,
+            claim,
+            chooses,
+            runs: 0,
+            passes: 0,
+            setup_cpu_s: f64::NAN,
+            cpu_s: f64::NAN,
+            wall_s: f64::NAN,
+            heap_bytes: 0,
+            rel_mse: none,
+            mse: none,
+            rel_mse_trimmed: none,
+            rel_bias2: none,
+            mean_bias: none,
+            detectable_bias: f64::NAN,
+            variance_seconds: f64::NAN,
+            times_oracle: None,
+            receivers: None,
+            counts: Counts::default(),
+            unstable: false,
+            skipped: None,
+            error: None,
+        }
+    }
 }

@@ -3,7 +3,7 @@
 //! The file names fonts and holds none; whoever shows it chooses them. Coordinates are whole pixels, so that the same
 //! rows give the same bytes everywhere.
 
-use super::mark::Mark;
+use super::mark::{Line, Mark};
 use crate::base::error::{Error, Result};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
@@ -261,15 +261,16 @@ fn line(area: &Area, frame: &Frame, Series { points, mark, .. }: &Series) -> Dra
     at.into_iter().try_for_each(|point| mark.draw(area, point))
 }
 
-/// A line in the look of `mark`: dashed when it is hollow.
+/// A line in the look of `mark`.
 fn stroke(area: &Area, at: &[(i32, i32)], mark: &Mark) -> Drawn {
     let look = mark.colour.stroke_width(2);
     if at.len() < 2 {
-        Ok(())
-    } else if mark.hollow {
-        area.draw(&DashedPathElement::new(at.iter().copied(), 7, 5, look))
-    } else {
-        area.draw(&PathElement::new(at.to_vec(), look))
+        return Ok(());
+    }
+    match mark.line {
+        Line::Solid => area.draw(&PathElement::new(at.to_vec(), look)),
+        Line::Dashed => area.draw(&DashedPathElement::new(at.iter().copied(), 7, 5, look)),
+        Line::Dotted => area.draw(&DashedPathElement::new(at.iter().copied(), 2, 4, look)),
     }
 }
 

@@ -6,13 +6,13 @@ use crate::base::statistics::{normal_quantile, sidak, student_quantile};
 use crate::record::{Claim, Interval, RunRecord, SceneRecord, Summary};
 use std::cmp::Ordering;
 
-/// Squared bias in units of relMSE, as far as it counts: 0 for a strategy without a bias of its own, never negative;
+/// Squared bias in units of relMSE, as far as it counts: 0 for what claims to have none, never negative;
 /// NaN where it is not known.
 pub fn bias2(summary: &Summary) -> f64 {
     match summary.claim {
         // `max` would turn NaN, a bias not known, into 0.
-        Claim::Biased { .. } if summary.rel_bias2.mean.is_nan() => f64::NAN,
-        Claim::Biased { .. } => summary.rel_bias2.mean.max(0.0),
+        Claim::Biased { .. } | Claim::External { .. } if summary.rel_bias2.mean.is_nan() => f64::NAN,
+        Claim::Biased { .. } | Claim::External { .. } => summary.rel_bias2.mean.max(0.0),
         Claim::Unbiased | Claim::Floor | Claim::Ceiling | Claim::Oracle => 0.0,
     }
 }
@@ -74,9 +74,9 @@ pub enum Balance {
     After(f64),
 }
 
-/// Where bias and noise of a biased strategy weigh the same; `None` for the others, and where b^2 is not known.
+/// Where bias and noise weigh the same of what may be biased; `None` for the others, and where b^2 is not known.
 pub fn balance(summary: &Summary) -> Option<Balance> {
-    if !matches!(summary.claim, Claim::Biased { .. }) {
+    if !summary.claim.may_be_biased() {
         return None;
     }
     let Interval { mean, half_width } = summary.rel_bias2;
@@ -120,14 +120,18 @@ pub fn measured(summary: &Summary) -> bool {
     summary.error.is_none() && summary.skipped.is_none()
 }
 
-/// Unbiased rows, then biased ones, then the floor, then the ceiling.
-pub fn group(summary: &Summary) -> u8 {
+/// The group of what no strategy is to be chosen among: from here on they stand together.
+pub(super) const FLOOR: u8 = 3;
+
+/// Unbiased rows, then biased ones, then other renderers, then the floor, then the ceiling.
+pub(super) fn group(summary: &Summary) -> u8 {
     match summary.claim {
         Claim::Unbiased => 0,
         Claim::Biased { .. } => 1,
-        Claim::Floor => 2,
-        Claim::Ceiling => 3,
-        Claim::Oracle => 4,
+        Claim::External { .. } => 2,
+        Claim::Floor => FLOOR,
+        Claim::Ceiling => FLOOR + 1,
+        Claim::Oracle => FLOOR + 2,
     }
 }
 

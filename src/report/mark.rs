@@ -1,4 +1,5 @@
-//! How a strategy is told from the others in a plot: colour, shape, and hollow and dashed when it is biased.
+//! How a strategy is told from the others in a plot: colour, shape, and hollow and dashed when it is biased; other
+//! renderers are dotted.
 
 use crate::record::Claim;
 use plotters::prelude::*;
@@ -24,14 +25,25 @@ const SHAPES: [&[(i32, i32)]; 5] = [
     &[(0, 7), (6, -5), (-6, -5)],
 ];
 
+/// How the points of a curve are joined.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Line {
+    /// Most curves.
+    Solid,
+    /// With hollow shapes.
+    Dashed,
+    /// Other renderers.
+    Dotted,
+}
+
 /// The look of one strategy.
 #[derive(Clone, Copy)]
 pub(super) struct Mark {
     /// Of lines and shapes.
     pub(super) colour: RGBColor,
     shape: &'static [(i32, i32)],
-    /// Drawn dashed, with hollow shapes.
-    pub(super) hollow: bool,
+    /// Between its shapes.
+    pub(super) line: Line,
 }
 
 impl Mark {
@@ -39,16 +51,21 @@ impl Mark {
     /// black.
     pub(super) fn new(claim: &Claim, nth: usize) -> Self {
         match claim {
-            Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: SHAPES[1], hollow: false },
-            Claim::Ceiling | Claim::Oracle => Self { colour: BLACK, shape: SHAPES[1], hollow: false },
+            Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: SHAPES[1], line: Line::Solid },
+            Claim::Ceiling | Claim::Oracle => Self { colour: BLACK, shape: SHAPES[1], line: Line::Solid },
+            Claim::External { .. } => Self { line: Line::Dotted, ..Self::nth(nth, false) },
             Claim::Unbiased | Claim::Biased { .. } => Self::nth(nth, matches!(claim, Claim::Biased { .. })),
         }
     }
 
-    /// The look of the `nth` curve: 35 differ.
+    /// The look of the `nth` curve, dashed with hollow shapes if `hollow`: 35 differ.
     pub(super) fn nth(nth: usize, hollow: bool) -> Self {
         // 7 and 5 have no common divisor: neighbours differ in both.
-        Self { colour: COLOURS[nth % COLOURS.len()], shape: SHAPES[nth % SHAPES.len()], hollow }
+        Self {
+            colour: COLOURS[nth % COLOURS.len()],
+            shape: SHAPES[nth % SHAPES.len()],
+            line: if hollow { Line::Dashed } else { Line::Solid },
+        }
     }
 
     /// Draws the shape about a pixel.
@@ -58,8 +75,9 @@ impl Mark {
         (x, y): (i32, i32),
     ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
         // The inside hides the lines behind it, so that hollow shapes read as hollow.
-        let inside = if self.hollow { WHITE.filled() } else { self.colour.filled() };
-        let edge = if self.hollow { self.colour.stroke_width(2) } else { WHITE.stroke_width(1) };
+        let hollow = self.line == Line::Dashed;
+        let inside = if hollow { WHITE.filled() } else { self.colour.filled() };
+        let edge = if hollow { self.colour.stroke_width(2) } else { WHITE.stroke_width(1) };
         if self.shape.is_empty() {
             area.draw(&Circle::new((x, y), 6, inside))?;
             return area.draw(&Circle::new((x, y), 6, edge));

@@ -74,8 +74,7 @@ impl Sheet {
             let name = Entry::Name(summary.strategy.clone(), remark(summary));
             Line {
                 cells: std::iter::once(name).chain(cells.map(Entry::Text)).collect(),
-                // Floor and ceiling stand together.
-                group: u32::from(figures::group(summary).min(2)),
+                group: u32::from(figures::group(summary).min(figures::FLOOR)),
             }
         });
         let heads = std::iter::once(Head::left("strategy")).chain(columns.iter().map(|c| Head::right(c.head)));

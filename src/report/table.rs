@@ -104,7 +104,9 @@ pub(super) fn sheets(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> Vec<
     let timed: Vec<&Summary> = measured.iter().copied().filter(|s| s.claim != Claim::Oracle).collect();
     if !timed.is_empty() {
         let below = vec![bias_of_all(run, scene)];
-        sheets.extend([other_measures(&timed, &rows, below), by_brightness(&timed, &rows), work(&timed)]);
+        let counted: Vec<&Summary> = timed.iter().copied().filter(|s| !is_external(s)).collect();
+        sheets.extend([other_measures(&timed, &rows, below), by_brightness(&timed, &rows)]);
+        sheets.extend((!counted.is_empty()).then(|| work(&counted)));
     }
     sheets.extend(work_of_choosing(&measured));
     sheets
@@ -112,7 +114,7 @@ pub(super) fn sheets(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> Vec<
 
 fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
     let arrival = |s: &Summary, error| figures::time_to(s, &Curve::of(rows, &s.strategy), error);
-    let is_biased = |s: &Summary| matches!(s.claim, Claim::Biased { .. });
+    let is_biased = |s: &Summary| s.claim.may_be_biased();
     let mut columns = Vec::new();
     if summaries.iter().any(|s| s.claim != Claim::Unbiased) {
         columns.push(Column::new("claim", |s| claim(s).to_owned()));
@@ -170,9 +172,18 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
     if summaries.iter().any(|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
+    if summaries.iter().any(|s| is_external(s)) {
+        below.push(
+            "external: another renderer's image of the exported scene, its time as the notes above say.".to_owned(),
+        );
+    }
     for summary in summaries {
-        if let Claim::Biased { why } = &summary.claim {
-            below.push(format!("{}: {why}.", summary.strategy));
+        match &summary.claim {
+            Claim::Biased { why } => below.push(format!("{}: {why}.", summary.strategy)),
+            Claim::External { renderer } if figures::measured(summary) => {
+                below.push(format!("{}: {renderer}.", summary.strategy));
+            }
+            _ => {}
         }
     }
     Sheet::new("Error against time", summaries, &columns, below)
@@ -279,7 +290,12 @@ fn claim(summary: &Summary) -> &'static str {
         Claim::Floor => "floor",
         Claim::Ceiling => "ceiling",
         Claim::Oracle => "oracle",
+        Claim::External { .. } => "external",
     }
+}
+
+fn is_external(summary: &Summary) -> bool {
+    matches!(summary.claim, Claim::External { .. })
 }
 
 fn time(summary: &Summary, arrival: Arrival) -> String {

@@ -101,8 +101,13 @@ impl Camera {
 
     /// Unit direction through the centre of a pixel; `x` from the left, `y` from the top.
     pub fn direction(&self, x: u32, y: u32) -> DVec3 {
-        let across = (f64::from(x) + 0.5) / f64::from(self.width) * 2.0 - 1.0;
-        let along = (f64::from(y) + 0.5) / f64::from(self.height) * 2.0 - 1.0;
+        self.direction_through(f64::from(x) + 0.5, f64::from(y) + 0.5)
+    }
+
+    /// Unit direction through a point of the film, in pixels from its upper left corner.
+    pub fn direction_through(&self, x: f64, y: f64) -> DVec3 {
+        let across = x / f64::from(self.width) * 2.0 - 1.0;
+        let along = y / f64::from(self.height) * 2.0 - 1.0;
         (self.forward + self.right * across + self.down * along).normalize()
     }
 

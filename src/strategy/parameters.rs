@@ -32,7 +32,7 @@ pub struct Arguments {
 
 impl Arguments {
     /// Splits `key=value,key=value`.
-    pub(super) fn new(owner: &str, text: &str) -> Result<Self> {
+    pub(crate) fn new(owner: &str, text: &str) -> Result<Self> {
         let mut given: Vec<(String, String)> = Vec::new();
         for part in text.split(',').filter(|part| !part.trim().is_empty()) {
             let Some((name, value)) = part.split_once('=') else {
@@ -137,7 +137,7 @@ impl Arguments {
     }
 
     /// The parameters read; an error if the user gave one that nobody read.
-    pub(super) fn finish(self) -> Result<Vec<Parameter>> {
+    pub(crate) fn finish(self) -> Result<Vec<Parameter>> {
         match self.given.into_iter().next() {
             None => Ok(self.read),
             Some((name, _)) if self.read.is_empty() => {

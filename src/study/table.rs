@@ -45,6 +45,7 @@ pub(super) fn claim(summary: &Summary) -> Cell {
         Claim::Floor => "floor",
         Claim::Ceiling => "ceiling",
         Claim::Oracle => "oracle",
+        Claim::External { .. } => "external",
     }
     .into()
 }
@@ -62,5 +63,5 @@ pub(super) fn measured(summary: &Summary) -> bool {
 
 /// Whether a strategy is right on average by its own claim.
 pub(super) fn unbiased(summary: &Summary) -> bool {
-    !matches!(summary.claim, Claim::Biased { .. })
+    !summary.claim.may_be_biased()
 }
