@@ -80,7 +80,7 @@ fn the_lights_are_the_same() {
 #[test]
 fn the_image_is_the_same_but_for_rounding() {
     for name in SCENES {
-        let [out, back] = there_and_back(name).map(|parts| common::stage(parts));
+        let [out, back] = there_and_back(name).map(common::stage);
         assert_eq!(out.scene().camera().resolution(), back.scene().camera().resolution(), "{name}");
         assert_eq!(out.scene().exposure(), back.scene().exposure(), "{name}");
         let images = [&out, &back].map(|stage| {

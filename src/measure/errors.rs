@@ -67,7 +67,7 @@ impl Truth {
     /// The truth at some of its receivers, with the epsilon of all of them.
     pub fn only(&self, places: &[usize]) -> Self {
         let some = |half: &Vec<Vec3>| places.iter().map(|&i| half[i]).collect();
-        Self { epsilon: self.epsilon, ..Self::new([some(&self.halves[0]), some(&self.halves[1])]) }
+        Self { relative: self.relative, ..Self::new([some(&self.halves[0]), some(&self.halves[1])]) }
     }
 
     /// The best estimate, in cd/m^2.
