@@ -1,6 +1,6 @@
 """Turns what Blender opens into a glTF file that citylights reads.
 
-    python3 -m venv .venv && .venv/bin/pip install bpy numpy
+    python3.11 -m venv .venv && .venv/bin/pip install bpy numpy
     .venv/bin/python scenes/from_blender.py SCENE.{blend,fbx,usd,usdc,gltf,glb,obj} OUT.glb [--dim X]
 
 It also runs inside an installed Blender: blender -b --python scenes/from_blender.py -- SCENE OUT.glb
@@ -11,7 +11,9 @@ base colours. What changes, with its power kept:
 - an emission texture becomes a few plain emissive materials: each face takes the texture's mean over itself, faces of
   like brightness share their area-weighted mean, and faces under --dim (0.01 of the material's brightest) go dark;
 - area lights become emissive quads of the same power.
-Nothing else of a material (metal, glass, opacity, normal maps) reaches citylights, which has Lambertian surfaces only.
+What reaches citylights of a material is the Principled shader's base colour and emission, on Lambertian surfaces. Each
+thing that gives light and cannot be carried (a world that is not black, lamps within instanced collections, other shaders
+that emit) is told in a line.
 """
 
 import math
@@ -127,6 +129,24 @@ def split_emission(mesh, slot, material, dim):
             mesh.polygons[i].material_index = len(mesh.materials) - 1
 
 
+def tell_what_is_lost():
+    """A line for each thing whose light does not come along."""
+    world = bpy.context.scene.world
+    background = next((n for n in world.node_tree.nodes if n.type == "BACKGROUND"), None) if world and world.node_tree else None
+    if background and (background.inputs["Color"].is_linked or max(background.inputs["Color"].default_value[:3]) > 0):
+        print("left out: the light of the world (sky or environment map)")
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        if instance.is_instance and instance.object.type == "LIGHT":
+            print(f"left out: lamp `{instance.object.name}` within an instanced collection")
+    for material in bpy.data.materials:
+        nodes = material.node_tree.nodes if material.node_tree else []
+        if any(node.type == "EMISSION" for node in nodes):
+            print(f"left out: the Emission shader of material `{material.name}`; only Principled is read")
+        shader = principled(material)
+        if shader and shader.inputs["Emission Strength"].is_linked:
+            print(f"left out: the texture on the emission strength of material `{material.name}`")
+
+
 def plain_emission(dim):
     """Puts plain emissive materials in place of emission textures."""
     for mesh in [thing.data for thing in bpy.data.objects if thing.type == "MESH"]:
@@ -144,7 +164,7 @@ def freeze_meshes():
     made = []
     for instance in graph.object_instances:
         source = instance.object
-        if source.type not in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
+        if source.hide_render or source.type not in ("MESH", "CURVE", "SURFACE", "FONT", "META"):
             continue
         mesh = bpy.data.meshes.new_from_object(source, depsgraph=graph)
         if not mesh or not mesh.polygons:
@@ -184,7 +204,7 @@ def quads_for_area_lights():
         shader = principled(material)
         shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
         shader.inputs["Emission Color"].default_value = (*data.color, 1.0)
-        shader.inputs["Emission Strength"].default_value = data.energy / (math.pi * area)
+        shader.inputs["Emission Strength"].default_value = data.energy * 2 ** getattr(data, "exposure", 0) / (math.pi * area)
         x, y = width / 2, height / 2
         mesh = bpy.data.meshes.new(f"{lamp.name} quad")
         # An area light shines along its own -z: corners clockwise about +z.
@@ -206,6 +226,9 @@ def main(arguments):
     if not source.exists():
         sys.exit(f"{source}: no such file")
     open_scene(source)
+    tell_what_is_lost()
+    for thing in [thing for thing in bpy.data.objects if thing.type == "LIGHT" and thing.hide_render]:
+        bpy.data.objects.remove(thing)
     freeze_meshes()
     quads_for_area_lights()
     plain_emission(dim)

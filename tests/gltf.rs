@@ -6,10 +6,12 @@ mod common;
 
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
+use citylights::scene::camera::Camera;
 use citylights::scene::light::Shape;
-use citylights::scene::{Scene, Surface};
+use citylights::scene::{Parts, Scene, Surface};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
+use citylights::visibility::view::Seen;
 use common::gltf::{File, digest};
 use common::{ALBEDO, receiver};
 use glam::{DVec3, Mat4, Vec3};
@@ -362,6 +364,29 @@ fn an_emissive_triangle_shines_from_its_front_with_factor_times_strength() {
             near(found, 25.0 * lambert(corners, below, Vec3::Z), 1e-3);
         } else {
             assert_eq!(found, 0.0, "behind it is dark");
+        }
+    }
+}
+
+#[test]
+fn an_emitter_is_seen_from_the_sides_that_it_shines_from() {
+    for double_sided in [false, true] {
+        let mut file = File::ground();
+        file.emitter(TRIANGLE, 50.0, double_sided, json!({ "translation": [0, 4, 0] }));
+        let parts = file.scene().parts();
+        let Shape::Triangle { corners: [a, b, c], .. } = parts.lights[0] else { panic!("a triangle") };
+        let middle = (a + b + c) / 3.0;
+        for (height, in_front) in [(9.0, true), (0.5, false)] {
+            let eye = Vec3::new(middle.x + 0.1, middle.y - 0.1, height);
+            let camera = Camera::new(eye, middle, 5.0, 1, 1).expect("a camera");
+            let stage = common::stage(Parts { camera, ..parts.clone() });
+            let seen = stage.view().pixels()[0];
+            let wanted = if in_front || double_sided { "Emitter(" } else { "EmitterBack" };
+            assert!(format!("{seen:?}").starts_with(wanted), "{seen:?} from {height} m, double-sided: {double_sided}");
+            if let Seen::Emitter(light) = seen {
+                let Shape::Triangle { corners: [a, b, c], .. } = parts.lights[light as usize] else { panic!("one") };
+                assert!((b - a).cross(c - a).dot(eye - a) > 0.0, "its back was seen");
+            }
         }
     }
 }

@@ -175,7 +175,12 @@ fn wrong_values_are_told_with_their_path() {
             "materials[1].emissiveFactor",
             "above",
         ),
-        ("/materials/1/emissiveTexture", json!({ "index": 0 }), "materials[1].emissiveTexture", "remove it"),
+        (
+            "/materials/1/emissiveTexture",
+            json!({ "index": 0 }),
+            "materials[1].emissiveTexture",
+            "scenes/from_blender.py",
+        ),
         // Cameras.
         ("/cameras/0/perspective/yfov", json!(4), "cameras[0].perspective.yfov", "between 0 and pi"),
         ("/cameras/0/perspective/yfov", json!(0), "cameras[0].perspective.yfov", "between 0 and pi"),
@@ -192,6 +197,12 @@ fn wrong_values_are_told_with_their_path() {
             json!(["KHR_lights_punctual", "KHR_draco_mesh_compression"]),
             "extensionsRequired[1]",
             "known are KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_specular",
+        ),
+        (
+            "/extensionsUsed",
+            json!(["KHR_lights_punctual", "EXT_mesh_gpu_instancing"]),
+            "extensionsUsed[1]",
+            "remove it",
         ),
         ("/extensionsRequired", json!(["\u{1b}]0;x\u{7}"]), "extensionsRequired[0]", "\\u{1b}]0;x\\u{7}"),
         (

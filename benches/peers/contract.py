@@ -45,13 +45,16 @@ def run(say, arguments, setup_s, render):
             high = 4 * low
             spent[high] = render(high, seed, os.path.join(arguments.out, "more.exr"))
         cpu, wall = ((spent[high][i] - spent[low][i]) / (high - low) for i in (0, 1))
+        if cpu <= 0:
+            # Too few samples for a slope: all of the largest count's time is a bound from above.
+            cpu, wall = (spent[high][i] / high for i in (0, 1))
         for count in counts:
             say(
                 kind="image",
                 seed=seed,
                 spp=count,
                 setup_s=max(setup_s - cpu, 0.0),
-                cpu_s=max(count * cpu, 0.0),
+                cpu_s=count * cpu,
                 wall_s=max(count * wall, 0.0),
                 file=files[count],
             )

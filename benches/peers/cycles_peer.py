@@ -112,7 +112,7 @@ def load(path, light_tree):
     cameras = [thing for thing in scene.objects if thing.type == "CAMERA"]
     scene.camera = cameras[0]
     # Farther than any scene: what lies beyond is cut off.
-    scene.camera.data.clip_start, scene.camera.data.clip_end = 1e-3, 1e6
+    scene.camera.data.clip_start, scene.camera.data.clip_end = 1e-3, 1e7
     render, cycles = scene.render, scene.cycles
     render.engine = "CYCLES"
     render.resolution_x, render.resolution_y = file_json(path)["cameras"][0]["extras"]["resolution"]

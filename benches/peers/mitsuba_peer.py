@@ -8,9 +8,8 @@ To make the environment, once, in the folder of the repository (Python 3.9 or la
 `citylights compare SCENE --peer mitsuba` then finds it. What is asked of this script and what it prints stands in
 README.md beside it.
 
-The variant llvm_ad_rgb is taken where the LLVM library is found (a system package;
-DRJIT_LIBLLVM_PATH names it elsewhere; Dr.Jit 1.5 with LLVM 15 failed, with 19 it works), since it is Mitsuba's fastest on a CPU. Without it scalar_rgb is taken, where the pixel centres cost more
-than the rendering: its times then mean little, and the remarks say so.
+The variant llvm_ad_rgb, Mitsuba's fastest on a CPU, is taken where an LLVM library works with it. Without one scalar_rgb
+is taken, where the pixel centres cost more than the rendering: its times then mean little, and the remarks say so.
 """
 
 import os

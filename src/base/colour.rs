@@ -8,6 +8,18 @@ pub fn luminance(rgb: Vec3) -> f32 {
     rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
+/// The factor from radiance in cd/m^2 to displayed value at an exposure value at ISO 100: `1 / (1.2 * 2^EV100)`.
+///
+/// Source: ISO 2720 with q = 0.65, as in Lagarde and de Rousiers, SIGGRAPH course notes, 2014, section 5.2.
+pub fn exposure(ev100: f32) -> f32 {
+    1.0 / (1.2 * ev100.exp2())
+}
+
+/// The inverse of [`exposure`].
+pub fn ev100(exposure: f32) -> f32 {
+    -(1.2 * exposure).log2()
+}
+
 /// The sRGB transfer curve (IEC 61966-2-1): linear `[0, 1]` to encoded `[0, 1]`; clamps.
 pub fn srgb_encode(linear: f32) -> f32 {
     let x = linear.clamp(0.0, 1.0);

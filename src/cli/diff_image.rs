@@ -2,6 +2,7 @@
 
 use super::scene::{check_output, finite, positive};
 use super::{Outcome, print, say};
+use crate::base::colour;
 use crate::base::error::Error;
 use crate::image::flip::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, Pooled};
 use crate::image::map::{Map, Scale};
@@ -117,7 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         let message = "one picture is EXR (radiance), the other PNG (displayed values): two of a kind are right";
         return Err(Error::Invalid(message.into()).into());
     }
-    let given = arguments.ev100.map(|ev100| 1.0 / (1.2 * ev100.exp2())).or(arguments.exposure);
+    let given = arguments.ev100.map(colour::exposure).or(arguments.exposure);
     let default = if radiance && given.is_none() { Metric::HdrFlip } else { Metric::Flip };
     let metric = arguments.metric.unwrap_or(default);
     if metric == Metric::HdrFlip && !radiance {

@@ -1,6 +1,7 @@
 //! Options that say which scene, and how it is prepared.
 
 use super::say;
+use crate::base::colour;
 use crate::base::error::Error;
 use crate::base::names;
 use crate::image::Format;
@@ -44,8 +45,7 @@ pub(super) struct SceneOptions {
 impl SceneOptions {
     /// Loads a scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, Error> {
-        // exposure = 1 / (1.2 * 2^EV100)
-        let ev100 = self.exposure.map(|exposure| -(1.2 * exposure).log2()).or(self.ev100);
+        let ev100 = self.exposure.map(colour::ev100).or(self.ev100);
         let scene = file::open(
             path,
             &Overrides {

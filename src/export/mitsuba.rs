@@ -2,16 +2,15 @@
 //!
 //! In the variants that end in `_rgb` every number passes unchanged. Triangles lie in one `serialized` file beside the
 //! scene: surfaces by material, lights by radiance, since each emissive shape there is one emitter, from which points
-//! are drawn by area. The cone of a spot is a bitmap, as Mitsuba's own ramp is linear in the angle. Summed light by
-//! light at pixel centres, the lamps, headlights and moon of `first-night` give our reference to 2e-5 of the mean.
+//! are drawn by area. The cone of a spot is a bitmap, as Mitsuba's own ramp is linear in the angle.
 //!
 //! Source: Mitsuba 3.9 documentation of `direct`, `perspective`, `hdrfilm`, `area`, `point`, `spot`, `directional`.
 
-use super::Export;
 use super::cone::{Cone, Table};
 use super::meshes::{by_material, by_radiance};
 use super::serialized;
 use super::text::{Three, aim, word};
+use super::{Export, SAMPLES};
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::light::Shape;
@@ -20,8 +19,6 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Samples a pixel that the file asks for.
-const SAMPLES: u32 = 64;
 /// Name of the file with all meshes.
 const MESHES: &str = "meshes.serialized";
 
@@ -29,9 +26,9 @@ const MESHES: &str = "meshes.serialized";
 pub(super) fn export(scene: &Scene, file: &Path) -> Result<Export> {
     let folder = file.with_extension("");
     let name = folder.file_name().and_then(|name| name.to_str());
-    let Some(name) = name.filter(|name| !name.contains(['<', '>', '&', '"'])) else {
+    let Some(name) = name.filter(|name| !name.contains(['<', '>', '&', '"', '$'])) else {
         return Err(Error::Invalid(format!(
-            "`{}` is no name for a Mitsuba scene: it stands in the file itself, without < > & and quotes",
+            "`{}` is no name for a Mitsuba scene: it stands in the file itself, without < > & $ and quotes",
             file.display()
         )));
     };
@@ -182,7 +179,7 @@ impl Writer {
                 Three(intensity, ", ")
             ),
             Shape::Spot { position, axis, intensity, .. } => {
-                let i = Cone::of(shape).map_or(0, |cone| tables.known[&cone]);
+                let i = tables.known[&Cone::of(shape).expect("a spot has a cone")];
                 let across = axis.any_orthonormal_vector().as_dvec3();
                 // Full to the cut-off, where the table ends.
                 let angle = tables.cones[i].cutoff().to_degrees();

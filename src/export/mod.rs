@@ -18,6 +18,9 @@ use crate::base::names;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
+/// Samples a pixel that files with a sampler ask for.
+const SAMPLES: u32 = 64;
+
 /// What a scene can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
@@ -86,7 +89,8 @@ pub struct Export {
 }
 
 impl Export {
-    /// Writes all files, or none; what was there is replaced.
+    /// Writes all files; none that was there is replaced before all are on disk, and the one that names the others is
+    /// replaced last.
     pub fn write(&self) -> Result<()> {
         if let Some(folder) = self.files.first().and_then(|(path, _)| path.parent())
             && self.files.len() > 1

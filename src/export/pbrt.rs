@@ -3,24 +3,21 @@
 //! Without `power`, with a sensor of `cie1931`, ISO 100 and a shutter open for one second, pbrt's pixels are the
 //! radiance in the scene's own unit. One file: triangles stand in it as numbers, surfaces by material, lights by
 //! radiance; there each emissive triangle is a light of its own. pbrt's spot falls off as the smoothstep in the
-//! cosine; its cones are chosen so that the flux is equal, and what is left is said. pbrt was not to be had where this
-//! was written: a strict reader in `tests/export.rs` checks the file, and its settings were measured elsewhere before.
+//! cosine; its cones are chosen so that the flux is equal, and what is left is said. Not rendered with pbrt here:
+//! a strict reader in `tests/export.rs` checks the file.
 //!
 //! Source: pbrt-v4, the input file format; Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 2023,
 //! sections 5.4 and 12.
 
-use super::Export;
 use super::cone::{Cone, Smooth};
 use super::meshes::{Corners, by_material, by_radiance};
 use super::text::{Number, Three, aim, word};
+use super::{Export, SAMPLES};
 use crate::scene::Scene;
 use crate::scene::camera::Camera;
 use crate::scene::light::Shape;
 use glam::Vec3;
 use std::path::Path;
-
-/// Samples a pixel that the file asks for.
-const SAMPLES: u32 = 64;
 
 /// The scene as one `.pbrt` file.
 pub(super) fn export(scene: &Scene, file: &Path) -> Export {

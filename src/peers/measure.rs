@@ -66,6 +66,9 @@ pub fn measure(
     writer: &mut RowWriter,
     watch: &dyn Observer,
 ) -> Result<Measured> {
+    if options.peers.is_empty() {
+        return Ok(Measured::default());
+    }
     let receivers = Target::new(stage).receivers;
     let places = mask::clear(stage, &receivers);
     let ground = Ground {
@@ -195,7 +198,10 @@ impl<'a> Session<'a> {
     }
 
     fn run(&mut self, writer: &mut RowWriter, watch: &dyn Observer) -> std::result::Result<(), Trouble> {
-        let Ground { stage, folder, options, .. } = self.ground;
+        let Ground { stage, folder, options, pixels, .. } = self.ground;
+        if pixels.is_empty() {
+            return Err(Trouble::Failed("no receiver is clear of emitters and silhouettes".into()));
+        }
         let kind = self.peer.kind;
         let (scene, path) = (folder.join(kind.scene.1), folder.join(kind.script.0));
         let exported = export(stage.scene(), kind.scene.0, &scene).map_err(|error| failed(&error))?;
@@ -258,8 +264,12 @@ impl<'a> Session<'a> {
         writer: &mut RowWriter,
     ) -> std::result::Result<(), Trouble> {
         let times = [image.setup_s, image.cpu_s, image.wall_s];
-        if times.iter().any(|time| !(0.0..1e9).contains(time)) {
+        if times.iter().any(|time| !(0.0..1e9).contains(time)) || image.cpu_s == 0.0 {
             return Err(Trouble::Failed(format!("gave times of {times:?} s")));
+        }
+        // Read and removed below: it must be one of the folder's own.
+        if Path::new(&image.file).file_name() != Some(image.file.as_ref()) {
+            return Err(Trouble::Failed(format!("gave `{}`, which is no plain file name", image.file)));
         }
         let path = self.ground.folder.join(&image.file);
         let picture = exr::read(&path).map_err(|error| failed(&error))?;

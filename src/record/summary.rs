@@ -43,7 +43,12 @@ pub enum Claim {
 impl Claim {
     /// Whether its bias is measured and printed: it claims one, or claims nothing.
     pub fn may_be_biased(&self) -> bool {
-        matches!(self, Self::Biased { .. } | Self::External { .. })
+        matches!(self, Self::Biased { .. }) || self.is_external()
+    }
+
+    /// Whether another renderer makes it.
+    pub fn is_external(&self) -> bool {
+        matches!(self, Self::External { .. })
     }
 }
 

@@ -10,8 +10,8 @@ use crate::record::{Claim, Row, SceneRecord, Summary};
 /// The plot of a scene as SVG: relMSE over receivers against CPU seconds, set-up included, means over runs with 95 %
 /// intervals.
 ///
-/// Biased strategies are dashed and hollow, other renderers dotted. What a logarithmic axis cannot show (an error of exactly 0) is named under
-/// the legend. `rows` may hold other scenes too.
+/// Biased strategies are dashed and hollow, other renderers dotted. What a logarithmic axis cannot show (an error of
+/// exactly 0) is named under the legend. `rows` may hold other scenes too.
 pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
     let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
     summaries.sort_by(|a, b| figures::order(a, b));
@@ -22,9 +22,9 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
         // By name and not by rank: a strategy keeps its look from scene to scene of a run.
         let of = |group: fn(&Claim) -> bool| scene.summaries.iter().filter(move |s| group(&s.claim));
         let before = |s: &&Summary| s.strategy < summary.strategy;
-        let nth = if is_external(&summary.claim) {
+        let nth = if summary.claim.is_external() {
             // After all strategies: they look the same with and without other renderers.
-            of(is_strategy).count() + of(is_external).filter(before).count()
+            of(is_strategy).count() + of(Claim::is_external).filter(before).count()
         } else {
             of(is_strategy).filter(before).count()
         };
@@ -60,8 +60,4 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
 /// Whether a strategy has a colour of its own.
 fn is_strategy(claim: &Claim) -> bool {
     matches!(claim, Claim::Unbiased | Claim::Biased { .. })
-}
-
-fn is_external(claim: &Claim) -> bool {
-    matches!(claim, Claim::External { .. })
 }

@@ -104,7 +104,7 @@ pub(super) fn sheets(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> Vec<
     let timed: Vec<&Summary> = measured.iter().copied().filter(|s| s.claim != Claim::Oracle).collect();
     if !timed.is_empty() {
         let below = vec![bias_of_all(run, scene)];
-        let counted: Vec<&Summary> = timed.iter().copied().filter(|s| !is_external(s)).collect();
+        let counted: Vec<&Summary> = timed.iter().copied().filter(|s| !s.claim.is_external()).collect();
         sheets.extend([other_measures(&timed, &rows, below), by_brightness(&timed, &rows)]);
         sheets.extend((!counted.is_empty()).then(|| work(&counted)));
     }
@@ -172,7 +172,7 @@ fn against_time(summaries: &[&Summary], rows: &[&Row]) -> Sheet {
     if summaries.iter().any(|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
-    if summaries.iter().any(|s| is_external(s)) {
+    if summaries.iter().any(|s| s.claim.is_external()) {
         below.push(
             "external: another renderer's image of the exported scene, its time as the notes above say.".to_owned(),
         );
@@ -292,10 +292,6 @@ fn claim(summary: &Summary) -> &'static str {
         Claim::Oracle => "oracle",
         Claim::External { .. } => "external",
     }
-}
-
-fn is_external(summary: &Summary) -> bool {
-    matches!(summary.claim, Claim::External { .. })
 }
 
 fn time(summary: &Summary, arrival: Arrival) -> String {

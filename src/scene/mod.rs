@@ -19,6 +19,7 @@ pub mod receiver;
 pub mod recipe;
 pub mod small;
 
+use crate::base::colour::exposure;
 use crate::base::error::{Error, Result};
 use camera::Camera;
 use glam::{DVec3, Vec3};
@@ -233,11 +234,9 @@ impl Scene {
         self.ev100
     }
 
-    /// The factor from radiance in cd/m^2 to displayed value: `1 / (1.2 * 2^EV100)`, or 1 where no EV100 is given.
-    ///
-    /// Source: ISO 2720 with q = 0.65, as in Lagarde and de Rousiers, SIGGRAPH course notes, 2014, section 5.2.
+    /// The factor from radiance in cd/m^2 to displayed value: [`exposure`] of its EV100, or 1 where none is given.
     pub fn exposure(&self) -> f32 {
-        self.ev100.map_or(1.0, |ev| 1.0 / (1.2 * ev.exp2()))
+        self.ev100.map_or(1.0, exposure)
     }
 
     /// What a reader should know about how this scene came to be.

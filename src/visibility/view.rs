@@ -2,9 +2,9 @@
 
 use super::occluders::{Met, Occluders};
 use crate::scene::Scene;
-use crate::scene::light::LightId;
+use crate::scene::light::{Kind, Light, LightId};
 use crate::scene::receiver::Receiver;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// What a pixel sees through its centre.
@@ -90,14 +90,30 @@ enum Found {
     Surface(Receiver),
 }
 
+/// The emitter that is seen where a ray along `direction` meets emitter `id`, if it shows its front.
+///
+/// One that shines from both sides is two triangles in one place, next to each other in the table; the ray may meet
+/// either.
+fn facing(lights: &[Light], id: LightId, direction: DVec3) -> Option<LightId> {
+    let front = |light: &Light| light.c.as_dvec3().dot(direction) < 0.0;
+    let met = &lights[id as usize];
+    let turned = |other: &Light| {
+        other.kind() == Kind::Triangle && (other.position, other.a, other.b) == (met.position, met.b, met.a)
+    };
+    if front(met) {
+        return Some(id);
+    }
+    let mut beside = [id.checked_sub(1), Some(id + 1)].into_iter().flatten();
+    beside.find(|&id| lights.get(id as usize).is_some_and(|light| turned(light) && front(light)))
+}
+
 fn look(scene: &Scene, occluders: &Occluders, x: u32, y: u32) -> Found {
     let (eye, direction) = (scene.camera().position(), scene.camera().direction(x, y));
     let Some((met, t)) = occluders.first(eye, direction) else { return Found::Other(Seen::Sky) };
     let index = match met {
         Met::Surface(index) => index,
         Met::Light(id) => {
-            let front = scene.lights()[id as usize].c.as_dvec3().dot(direction) < 0.0;
-            return Found::Other(if front { Seen::Emitter(id) } else { Seen::EmitterBack });
+            return Found::Other(facing(scene.lights(), id, direction).map_or(Seen::EmitterBack, Seen::Emitter));
         }
     };
     let surface = &scene.surfaces()[index as usize];

@@ -11,8 +11,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Deref;
 
-/// Most entries of a list at the top level of a document: 2^22 nodes take about a gigabyte.
-const LONGEST_LIST: usize = 1 << 22;
+/// Most entries of a list at the top level of a document: 2^21 nodes take about half a gigabyte.
+const LONGEST_LIST: usize = 1 << 21;
 
 /// The document.
 #[derive(Deserialize)]

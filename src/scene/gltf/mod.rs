@@ -14,7 +14,7 @@
 //! be ignored without changing the light (textures that emit, sparse accessors, required extensions) is refused.
 //!
 //! Every mistake is an [`Error::Input`] with the path in the document, `meshes[3].primitives[0].attributes.POSITION`;
-//! nothing that a file can say panics or asks for memory out of proportion to its length.
+//! nothing that a file can say panics or asks for more than about a hundred bytes of memory for each of its own.
 //!
 //! Positions are worked out in f64 and kept in f32 relative to an origin near the middle of the surfaces.
 //!
@@ -179,6 +179,11 @@ impl Reader<'_> {
             let (shown, known): (String, _) = (name.chars().take(60).collect(), notes::EXTENSIONS.join(", "));
             let text = format_args!("\"{shown}\" is not read here; known are {known}");
             return Err(self.wrong(format_args!("extensionsRequired[{i}]"), text));
+        }
+        let used = self.document.extensions_used.iter().enumerate();
+        if let Some((i, name)) = used.into_iter().find(|(_, name)| notes::CHANGE_THE_LIGHT.contains(&name.as_str())) {
+            let text = format_args!("{name} is not read here, and without it the light would be another; remove it");
+            return Err(self.wrong(format_args!("extensionsUsed[{i}]"), text));
         }
         Ok(())
     }

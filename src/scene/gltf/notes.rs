@@ -6,6 +6,9 @@ use crate::scene::name;
 /// Extensions that are read.
 pub(super) const EXTENSIONS: [&str; 3] =
     ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular"];
+/// Extensions that add lights or decide which objects there are: not to be passed over.
+pub(super) const CHANGE_THE_LIGHT: [&str; 4] =
+    ["EXT_lights_image_based", "EXT_lights_ies", "EXT_mesh_gpu_instancing", "KHR_node_visibility"];
 /// Most extensions that are told by name.
 const MOST_NAMES: usize = 12;
 
