@@ -1,8 +1,9 @@
 //! Which clusters stand for all lights around here?
 //!
 //! A partition serves all receivers of a region: every light of the tree is in one of its elements, those too that seem to add
-//! nothing here. A cluster is weighed with its box grown by the region's, at the region's middle; the heaviest is replaced by its
-//! slots until there are enough. The directional lights together are one element.
+//! nothing there. A cluster is weighed with its box grown by the region's, at the region's middle; the heaviest is replaced by
+//! the slots of its node until there are enough. At a receiver an element then weighs what it weighs there. The directional
+//! lights together are one element.
 
 use super::Tree;
 use super::importance::weigh;
@@ -21,40 +22,29 @@ use std::collections::BinaryHeap;
 pub(in crate::strategy) struct Element(u32);
 
 impl Element {
-    const DIRECTIONAL: Self = Self(u32::MAX);
+    /// All directional lights.
+    pub(in crate::strategy) const DIRECTIONAL: Self = Self(u32::MAX);
 }
 
-/// An element and its weight around here.
+/// A node with slots that are elements.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::strategy) struct Weighed {
-    pub(in crate::strategy) element: Element,
-    /// In lx.
-    pub(in crate::strategy) weight: f32,
-    /// Where its lights start in the tree's order: elements are sorted by it.
-    first: u32,
-    /// Its node, if it can be replaced.
-    node: Option<u32>,
+pub(in crate::strategy) struct Divided<const N: usize> {
+    node: u32,
+    /// Which slots: not the empty ones, nor those that are divided themselves.
+    pub(in crate::strategy) elements: [bool; N],
 }
 
-impl Ord for Weighed {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.weight.total_cmp(&other.weight).then_with(|| other.first.cmp(&self.first))
+impl<const N: usize> Divided<N> {
+    /// The element in a slot.
+    #[inline]
+    pub(in crate::strategy) fn element(node: u32, slot: usize) -> Element {
+        Element(node * N as u32 + slot as u32)
+    }
+
+    pub(in crate::strategy) fn node(&self) -> u32 {
+        self.node
     }
 }
-
-impl PartialOrd for Weighed {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Weighed {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Weighed {}
 
 /// Receivers with nearly the same normal: one in the middle of their box, and half its extents in metres.
 #[derive(Clone, Copy, Debug)]
@@ -63,62 +53,108 @@ pub(in crate::strategy) struct Region {
     pub(in crate::strategy) half: Vec3,
 }
 
+/// A slot that may be divided.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    weight: f32,
+    /// Its own node.
+    node: u32,
+    /// The node it is a slot of, by its place in the list, and the slot.
+    of: (usize, usize),
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.weight.total_cmp(&other.weight).then_with(|| other.node.cmp(&self.node))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}
+
 impl<const N: usize> Tree<N> {
-    /// Most elements of a partition that is asked for `most`: never less than the root's slots and the directional lights.
-    pub(in crate::strategy) fn most_elements(&self, most: usize) -> usize {
-        most.max(N).min(self.order.len()) + usize::from(!self.directional.is_empty())
+    /// Most nodes of a partition that is asked for `most` elements.
+    pub(in crate::strategy) fn most_divided(&self, most: usize) -> usize {
+        // Each but the root replaces an element by several.
+        (1 + most.saturating_sub(2)).min(self.nodes.len())
     }
 
-    /// All lights as elements, neighbours together, of which there are [`most_elements`](Self::most_elements) at the most.
-    ///
-    /// Each light of the tree is in one element, whatever its weight: 0 means that nothing of the element can add anything
-    /// to a receiver of the region that has the middle one's normal.
+    /// Whether there is any directional light.
+    pub(in crate::strategy) fn has_directional(&self) -> bool {
+        !self.directional.is_empty()
+    }
+
+    /// Nodes whose slots make up all lights of the tree, `most` elements or those of the root if they are more; the nodes in the
+    /// tree's order.
     pub(in crate::strategy) fn partition<T: Tally>(
         &self,
         region: &Region,
         most: usize,
-        memory: &mut Memory<N>,
         tally: &mut T,
-    ) -> Vec<Weighed> {
-        self.arrive(&region.middle, memory, tally);
-        let mut settled = Vec::with_capacity(self.most_elements(most));
-        let mut open = BinaryHeap::with_capacity(self.most_elements(most));
-        if !self.nodes.is_empty() {
-            self.divide(0, region, &mut open, tally);
+    ) -> Vec<Divided<N>> {
+        let mut divided = Vec::new();
+        let mut open = BinaryHeap::new();
+        if self.nodes.is_empty() {
+            return divided;
         }
-        while let Some(heaviest) = open.pop() {
-            match heaviest.node {
-                Some(node) if heaviest.weight > 0.0 && settled.len() + open.len() + N <= most => {
-                    self.divide(node as usize, region, &mut open, tally);
-                }
-                _ => settled.push(heaviest),
+        let mut count = self.divide(0, region, &mut divided, &mut open, tally);
+        while let Some(Candidate { weight, node, of: (place, slot) }) = open.pop() {
+            if weight <= 0.0 || count + N - 1 > most {
+                break;
             }
+            divided[place].elements[slot] = false;
+            count += self.divide(node, region, &mut divided, &mut open, tally) - 1;
         }
-        settled.sort_unstable_by_key(|weighed| weighed.first);
-        if !self.directional.is_empty() {
-            let weight = self.directional(memory).map(|(_, weight)| weight).sum();
-            settled.push(Weighed { element: Element::DIRECTIONAL, weight, first: u32::MAX, node: None });
-        }
-        settled
+        divided.sort_unstable_by_key(|divided| divided.node);
+        divided
     }
 
-    /// Adds the filled slots of a node.
-    fn divide<T: Tally>(&self, at: usize, region: &Region, open: &mut BinaryHeap<Weighed>, tally: &mut T) {
+    /// Adds a node and its slots; gives their number.
+    fn divide<T: Tally>(
+        &self,
+        at: u32,
+        region: &Region,
+        divided: &mut Vec<Divided<N>>,
+        open: &mut BinaryHeap<Candidate>,
+        tally: &mut T,
+    ) -> usize {
         tally.nodes(1);
         tally.weighed(N as u64);
-        let node = &self.nodes[at];
+        let node = &self.nodes[at as usize];
         let weights = weigh(&node.grown(region.half), &region.middle, self.how);
-        let mut first = node.lights().start as u32;
-        for slot in 0..N {
-            let (below, lights) = match node.slot(slot) {
-                Slot::Empty => continue,
-                Slot::Light(_) => (None, 1),
-                Slot::Node(offset) => (Some(at as u32 + offset), self.nodes[at + offset as usize].lights().len()),
-            };
-            let element = Element((at * N + slot) as u32);
-            open.push(Weighed { element, weight: 0.5 * (weights.near[slot] + weights.far[slot]), first, node: below });
-            first += lights as u32;
+        let mut elements = [true; N];
+        for (slot, element) in elements.iter_mut().enumerate() {
+            match node.slot(slot) {
+                Slot::Empty => *element = false,
+                Slot::Light(_) => {}
+                Slot::Node(offset) => {
+                    let weight = 0.5 * (weights.near[slot] + weights.far[slot]);
+                    open.push(Candidate { weight, node: at + offset, of: (divided.len(), slot) });
+                }
+            }
         }
+        divided.push(Divided { node: at, elements });
+        elements.iter().filter(|element| **element).count()
+    }
+
+    /// The weights of a node's slots at a receiver, in lx: 0 only where no light of a slot can add anything.
+    #[inline]
+    pub(in crate::strategy) fn weights<T: Tally>(&self, node: u32, at: &Receiver, tally: &mut T) -> [f32; N] {
+        tally.nodes(1);
+        tally.weighed(N as u64);
+        let weights = weigh(&self.nodes[node as usize], at, self.how);
+        std::array::from_fn(|slot| 0.5 * weights.near[slot] + 0.5 * weights.far[slot])
     }
 
     /// A light of an element and its probability there, at the receiver that `memory` has arrived at.

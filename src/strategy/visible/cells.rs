@@ -3,8 +3,8 @@
 //! Those in one cube of a grid whose normals have the same greatest component and sign. Cells are known when the sampler is
 //! built; each keeps a few of its receivers, spread over all of them, for its table to be learned at.
 
-use super::TRIED;
-use super::table::Table;
+use super::table::Table as Learned;
+use super::{TRIED, WIDTH};
 use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
 use crate::strategy::tree::partition::Region;
@@ -18,6 +18,8 @@ use std::sync::OnceLock;
 /// How far receivers are moved along their normal before the grid is laid, as a share of a cell: a wall in a plane of
 /// the grid would lie on both sides of it by rounding.
 const LIFT: f32 = 1e-3;
+
+type Table = Learned<WIDTH>;
 
 /// The cells of a scene's receivers.
 #[derive(Default)]

@@ -2,10 +2,10 @@
 //!
 //! A light tree chooses nearly as well as weighing every light with nothing in between; what is left is what stands in
 //! between. Receivers that are near one another and face the same way see nearly the same lights. So they share a table:
-//! all lights as a few dozen clusters of a light tree, near ones small and far ones large, each with a probability that was
-//! learned by a few shadow rays to points on its lights. A pick takes a cluster by the table and a light of it by a walk
-//! at the receiver itself. Its probability is the product of both, known exactly whatever was learned: a bad table costs
-//! noise and no light is ever out of reach.
+//! all lights as some dozens of clusters of a light tree, near ones small and far ones large, each with what is seen of
+//! it, learned by a few shadow rays to points on its lights. A pick takes a cluster by its weight at the receiver times
+//! what the table says, and a light of it by a walk. Its probability is the product of both, known exactly whatever was
+//! learned: a bad table costs noise, and no light that can add anything is ever out of reach.
 //!
 //! | question | where |
 //! |---|---|
@@ -28,13 +28,14 @@ use super::light_tree::{self, LightTree};
 use super::parameters::Arguments;
 use super::tally::{Tally, Uncounted};
 use super::target::Target;
+use super::tree::walk::USED_UP;
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
 use cells::Cells;
-use table::{Lesson, School, Table};
+use table::{Lesson, School, Table, Weighed};
 
 /// Slots of a node of the tree.
 const WIDTH: usize = 4;
@@ -47,6 +48,8 @@ pub struct Visible {
     /// Side of a cell in metres.
     cell: f32,
     lesson: Lesson,
+    /// Share of picks with nothing in between.
+    floor: f64,
     picks: u32,
     /// As of the tree.
     far: f32,
@@ -78,8 +81,8 @@ impl Strategy for Visible {
         let far = arguments.real("far", 0.0, 0.0..=1.0, far)?;
         let memory = "most MB of all tables; cells of few receivers have none where it does not suffice";
         let memory = arguments.count("memory", 16, 0..=65_536, memory)?;
-        let lesson = Lesson { cut: cut as usize, probes, floor: floor.into() };
-        Ok(Self { cell, lesson, picks, far, memory: memory as usize * 1_000_000 })
+        let lesson = Lesson { cut: cut as usize, probes };
+        Ok(Self { cell, lesson, floor: floor.into(), picks, far, memory: memory as usize * 1_000_000 })
     }
 
     fn scale_free(&self) -> bool {
@@ -89,15 +92,16 @@ impl Strategy for Visible {
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
         let stage = context.stage;
         let tree = LightTree::plain(self.picks, self.far)?.sampler::<WIDTH>(context)?;
-        let most = tree.tree().most_elements(self.lesson.cut);
-        let learns = stage.needs().occlusion && tree.tree().len() + most > 2;
-        let cells = if learns {
-            Cells::new(stage.receivers(), self.cell, self.memory, most * size_of::<table::Entry>())
+        // With one light there is no choice, and with nothing in between nothing to learn.
+        let cells = if stage.needs().occlusion && stage.lights().len() > 1 {
+            let table = Table::<WIDTH>::bytes(tree.tree().most_divided(self.lesson.cut));
+            Cells::new(stage.receivers(), self.cell, self.memory, table)
         } else {
             Cells::default()
         };
         let seed = hash(&[context.seed, u64::from_le_bytes(*b"visible:")]);
-        Ok(Sampler { tree, cells, target: Target::new(context), lesson: self.lesson, picks: self.picks, seed })
+        let Self { lesson, floor, picks, .. } = *self;
+        Ok(Sampler { tree, cells, target: Target::new(context), lesson, floor, picks, seed })
     }
 }
 
@@ -108,6 +112,7 @@ pub struct Sampler {
     cells: Cells,
     target: Target,
     lesson: Lesson,
+    floor: f64,
     picks: u32,
     /// Of the probes.
     seed: u64,
@@ -117,17 +122,25 @@ pub struct Sampler {
 #[derive(Default)]
 pub struct Scratch {
     tree: light_tree::Scratch<WIDTH>,
-    /// The cell that was arrived at.
-    cell: Option<u32>,
+    /// Whether the receiver that was arrived at has a table.
+    learned: bool,
+    /// By that table.
+    weighed: Weighed,
 }
 
 impl Sampler {
-    /// The table of a cell, made if it is not yet there.
-    fn table<T: Tally>(&self, cell: u32, scratch: &mut light_tree::Scratch<WIDTH>, tally: &mut T) -> &Table {
-        let school = School { tree: self.tree.tree(), target: &self.target };
-        self.cells.table(cell, |region, tried, name| {
-            self.lesson.learn(school, region, tried, hash(&[self.seed, name]), &mut scratch.memory, tally)
-        })
+    /// Weighs the clusters at a receiver, learning what its cell sees if nobody has yet; false where it has no cell.
+    fn weigh<T: Tally>(&self, at: &Receiver, scratch: &mut Scratch, tally: &mut T) -> bool {
+        let Some(cell) = self.cells.find(at) else { return false };
+        let Scratch { tree: light_tree::Scratch { memory, .. }, weighed, .. } = scratch;
+        let tree = self.tree.tree();
+        let table = self.cells.table(cell, |region, tried, name| {
+            let school = School { tree, target: &self.target };
+            self.lesson.learn(school, region, tried, hash(&[self.seed, name]), memory, tally)
+        });
+        tree.arrive(at, memory, tally);
+        table.weigh(tree, at, self.floor, memory, weighed, tally);
+        true
     }
 }
 
@@ -135,38 +148,35 @@ impl LightSampler for Sampler {
     type Scratch = Scratch;
 
     fn arrive<T: Tally>(&self, at: &Receiver, scratch: &mut Scratch, tally: &mut T) {
-        scratch.cell = self.cells.find(at);
-        match scratch.cell {
-            Some(cell) => {
-                self.table(cell, &mut scratch.tree, tally);
-                self.tree.tree().arrive(at, &mut scratch.tree.memory, tally);
-            }
-            None => self.tree.arrive(at, &mut scratch.tree, tally),
+        scratch.learned = self.weigh(at, scratch, tally);
+        if !scratch.learned {
+            self.tree.arrive(at, &mut scratch.tree, tally);
         }
     }
 
     fn sample<T: Tally>(&self, at: &Receiver, draws: &mut Draws, scratch: &mut Scratch, out: &mut Picks<'_, T>) {
-        let Some(cell) = scratch.cell else {
+        if !scratch.learned {
             return self.tree.sample(at, draws, &mut scratch.tree, out);
-        };
-        let table = self.table(cell, &mut scratch.tree, out.tally);
+        }
         let memory = &mut scratch.tree.memory;
         for j in 0..self.picks {
-            let Some((element, share, left)) = table.pick(draws.choice_bits(j, self.picks)) else { return };
+            let Some((element, share, left)) = scratch.weighed.pick(draws.choice(j, self.picks)) else { return };
+            let left = if share < USED_UP { draws.stream().uniform64() } else { left };
             if let Some((light, pmf)) = self.tree.tree().pick_in(element, at, left, draws, memory, out.tally) {
-                out.push(light, (1.0 / (f64::from(self.picks) * share * pmf)).min(f64::from(f32::MAX)) as f32);
+                let count = f64::from(self.picks) * share * pmf;
+                out.push(light, ((1.0 / count) as f32).min(f32::MAX));
             }
         }
     }
 
     fn expected_counts(&self, at: &Receiver, counts: &mut [f32]) -> bool {
-        let Some(cell) = self.cells.find(at) else { return self.tree.expected_counts(at, counts) };
-        let (mut scratch, mut tally) = (light_tree::Scratch::default(), Uncounted);
-        let table = self.table(cell, &mut scratch, &mut tally);
-        self.tree.tree().arrive(at, &mut scratch.memory, &mut tally);
-        for (element, share) in table.elements() {
+        let mut scratch = Scratch::default();
+        if !self.weigh(at, &mut scratch, &mut Uncounted) {
+            return self.tree.expected_counts(at, counts);
+        }
+        for (element, share) in scratch.weighed.elements() {
             let scale = f64::from(self.picks) * share;
-            self.tree.tree().expect_in(element, at, scale, &scratch.memory, counts);
+            self.tree.tree().expect_in(element, at, scale, &scratch.tree.memory, counts);
         }
         true
     }

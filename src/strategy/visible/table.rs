@@ -1,10 +1,14 @@
 //! How often is each cluster chosen around here?
 //!
-//! In proportion to the root mean square of what a pick of it brings, shadow included: the probabilities of least variance.
-//! It is taken over a few probes: a receiver of the cell, a walk inside the cluster, a point on the light, a shadow ray.
-//! Few probes may all be blocked, or all by luck not: a prior, that a cluster is seen in part, counts as half a probe.
-//! And a share of all picks goes by what clusters could add with nothing in between, for what no probe has seen.
+//! In proportion to the root mean square of what a pick of it brings, shadow included: the probabilities of least variance. A
+//! table holds the ratio of that to the cluster's weight with nothing in between, so that a receiver of the cell chooses by its
+//! own weights times what the cell has learned: a cluster below its horizon has no chance, a near one has more.
+//!
+//! Ratios are learned by a few probes: a receiver of the cell, a walk inside the cluster, a point on the light, a shadow ray.
+//! Few probes may all be blocked, or all by luck not: a prior, that a cluster is seen in part, counts as half a probe. And a
+//! share of all picks goes by the weights alone, for what no probe has seen.
 
+use crate::base::discrete::Cumulative;
 use crate::base::draws::{Draws, Points, Sequence};
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
@@ -13,19 +17,19 @@ use crate::strategy::Pick;
 use crate::strategy::tally::Tally;
 use crate::strategy::target::Target;
 use crate::strategy::tree::Tree;
-use crate::strategy::tree::partition::{Element, Region, Weighed};
-use crate::strategy::tree::walk::Memory;
-use std::f32::consts::FRAC_1_PI;
+use crate::strategy::tree::partition::{Divided, Element, Region};
+use crate::strategy::tree::walk::{LEAST_SHARE, Memory};
+use std::f64::consts::PI;
 
 /// Root mean square of what is seen of a cluster over the mean of what there is: what is thought of it before any probe.
 const SEEN: f64 = 0.3;
 /// How many probes that counts for.
 const PRIOR: f64 = 0.5;
-/// How many probes the weight of a cluster's box counts for.
-const BOX: f64 = 0.25;
+/// How many probes a cluster's weight counts for, as what there is of it.
+const WEIGHT: f64 = 0.25;
 
-/// Of picks with nothing in between: shares by what probes found, by the boxes' weights, and to each cluster alike.
-const OPEN: [f64; 3] = [0.5, 0.45, 0.05];
+/// Clusters that weigh less than this share of the mean are tried by one probe.
+const MINOR: f32 = 0.1;
 
 /// How tables are learned.
 #[derive(Clone, Copy)]
@@ -34,28 +38,28 @@ pub(super) struct Lesson {
     pub(super) cut: usize,
     /// Probes of each.
     pub(super) probes: u32,
-    /// Share of picks with nothing in between.
-    pub(super) floor: f64,
 }
 
-/// Clusters of all lights, each with its probability. Whole numbers, so that probabilities are exact and sum to 1.
-pub(super) struct Table(Box<[Entry]>);
+/// Clusters of all lights, each with what is seen of it over its weight.
+pub(super) struct Table<const N: usize> {
+    rows: Box<[Row<N>]>,
+    /// Of the directional lights.
+    directional: f32,
+}
 
-/// A cluster.
+/// The clusters in a node's slots.
 #[derive(Clone, Copy)]
-pub(super) struct Entry {
-    /// Sum of the probabilities of those before it, in 2^-32.
-    start: u32,
-    element: Element,
+pub(super) struct Row<const N: usize> {
+    node: u32,
+    /// 0 of a slot that is no cluster here.
+    ratios: [f32; N],
 }
 
-/// What is known of a cluster.
-#[derive(Clone, Copy, Default)]
-struct Found {
-    /// Sum over the probes of what each point adds with nothing in between, over its probability.
-    open: f64,
-    /// Sum of the squares, of those that are visible.
-    seen2: f64,
+/// What tables are learned of.
+#[derive(Clone, Copy)]
+pub(super) struct School<'a, const N: usize> {
+    pub(super) tree: &'a Tree<N>,
+    pub(super) target: &'a Target,
 }
 
 impl Lesson {
@@ -68,62 +72,94 @@ impl Lesson {
         name: u64,
         memory: &mut Memory<N>,
         tally: &mut T,
-    ) -> Table {
-        let elements = school.tree.partition(region, self.cut, memory, tally);
-        let mut found = vec![Found::default(); elements.len()];
-        if elements.len() > 1 {
-            for (i, at) in tried.iter().enumerate() {
-                school.tree.arrive(at, memory, tally);
-                let mut draws = Sequence::new(RunKey { seed: name, run: 0 }, i as u32, Points::Random).pass(0);
-                for (e, (weighed, found)) in elements.iter().zip(&mut found).enumerate() {
-                    if weighed.weight <= 0.0 {
-                        continue;
-                    }
-                    // Each cluster at other receivers, in equal steps.
-                    for j in (0..self.probes)
-                        .filter(|&j| (e + j as usize * tried.len() / self.probes as usize) % tried.len() == i)
-                    {
-                        let u = (f64::from(j) + draws.stream().uniform64()) / f64::from(self.probes);
-                        let (value, visible) = school.probe(weighed.element, at, u, &mut draws, memory, tally);
-                        found.open += value;
-                        found.seen2 += if visible { value * value } else { 0.0 };
-                    }
-                }
+    ) -> Table<N> {
+        let tree = school.tree;
+        let nodes = tree.partition(region, self.cut, tally);
+        let mut clusters: Vec<Cluster> = nodes.iter().flat_map(Cluster::all).collect();
+        if tree.has_directional() {
+            clusters.push(Cluster::new(Element::DIRECTIONAL));
+        }
+        // By receiver, then by cluster.
+        let mut weights = Vec::with_capacity(tried.len() * clusters.len());
+        for at in tried {
+            for divided in &nodes {
+                let of_slots = tree.weights(divided.node(), at, tally);
+                weights.extend(of_slots.iter().zip(divided.elements).filter(|(_, is)| *is).map(|(weight, _)| *weight));
+            }
+            if tree.has_directional() {
+                tree.arrive(at, memory, tally);
+                weights.push(tree.directional(memory).map(|(_, weight)| weight).sum());
             }
         }
-        self.table(&elements, &found)
-    }
-
-    /// Weighs the clusters.
-    fn table(&self, elements: &[Weighed], found: &[Found]) -> Table {
-        let probes = f64::from(self.probes);
-        let boxed = || elements.iter().map(|weighed| f64::from(weighed.weight * FRAC_1_PI));
-        let open = || found.iter().zip(boxed()).map(|(found, boxed)| (found.open + BOX * boxed) / (probes + BOX));
-        let seen = || {
-            let prior = open().map(|open| PRIOR * (SEEN * open).powi(2));
-            found.iter().zip(prior).map(|(found, prior)| ((found.seen2 + prior) / (probes + PRIOR)).sqrt())
-        };
-        let count = elements.len();
-        let shares = |total: f64| move |value: f64| if total > 0.0 { value / total } else { 1.0 / count as f64 };
-        let (by_boxed, by_open, by_seen) = (shares(boxed().sum()), shares(open().sum()), shares(seen().sum()));
-        let mut sum = 0.0;
-        let mut entries = Vec::with_capacity(count);
-        for (i, ((boxed, open), seen)) in boxed().zip(open()).zip(seen()).enumerate() {
-            // One of 2^32 parts is each cluster's own.
-            let start = (f64::min(sum, 1.0) * (PARTS - count as u64) as f64) as u64 + i as u64;
-            entries.push(Entry { start: start as u32, element: elements[i].element });
-            let floor = OPEN[0] * by_open(open) + OPEN[1] * by_boxed(boxed) + OPEN[2] / count as f64;
-            sum += (1.0 - self.floor) * by_seen(seen) + self.floor * floor;
+        let count = clusters.len();
+        let rows = |e: usize| weights[e..].iter().step_by(count.max(1));
+        let means: Vec<f32> = (0..count).map(|e| rows(e).sum::<f32>() / tried.len() as f32).collect();
+        let minor = MINOR * means.iter().sum::<f32>() / means.len().max(1) as f32;
+        for (e, (cluster, mean)) in clusters.iter_mut().zip(&means).enumerate() {
+            cluster.lit = rows(e).filter(|weight| **weight > 0.0).count();
+            cluster.probes = if *mean > minor { self.probes } else { 1 };
         }
-        Table(entries.into_boxed_slice())
+        for (i, at) in tried.iter().enumerate() {
+            tree.arrive(at, memory, tally);
+            let mut draws = Sequence::new(RunKey { seed: name, run: 0 }, i as u32, Points::Random).pass(0);
+            let weights = &weights[i * count..][..count];
+            for (e, (cluster, weight)) in clusters.iter_mut().zip(weights).enumerate().filter(|(_, (_, w))| **w > 0.0) {
+                for j in cluster.turn(e) {
+                    let u = (f64::from(j) + draws.stream().uniform64()) / f64::from(cluster.probes);
+                    let (value, visible) = school.probe(cluster.element, at, u, &mut draws, memory, tally);
+                    cluster.add(value * PI / f64::from(*weight), visible);
+                }
+                cluster.met += 1;
+            }
+        }
+        Table::new(&nodes, &clusters)
     }
 }
 
-/// What tables are learned of.
+/// A cluster while it is learned of.
 #[derive(Clone, Copy)]
-pub(super) struct School<'a, const N: usize> {
-    pub(super) tree: &'a Tree<N>,
-    pub(super) target: &'a Target,
+struct Cluster {
+    element: Element,
+    /// Probes to make, and receivers at which it weighs anything: of all, and of those so far.
+    probes: u32,
+    lit: usize,
+    met: usize,
+    /// Sum over the probes of what each point adds with nothing in between, over its probability and the cluster's weight.
+    open: f64,
+    /// Sum of the squares, of those that are visible.
+    seen2: f64,
+    made: u32,
+}
+
+impl Cluster {
+    fn new(element: Element) -> Self {
+        Self { element, probes: 0, lit: 0, met: 0, open: 0.0, seen2: 0.0, made: 0 }
+    }
+
+    fn all<const N: usize>(of: &Divided<N>) -> impl Iterator<Item = Self> + use<N> {
+        let (node, elements) = (of.node(), of.elements);
+        (0..N).filter(move |&slot| elements[slot]).map(move |slot| Self::new(Divided::<N>::element(node, slot)))
+    }
+
+    /// The probes to make at the next receiver: each cluster at other ones, in equal steps.
+    fn turn(&self, number: usize) -> impl Iterator<Item = u32> + use<> {
+        let Self { probes, lit, met, .. } = *self;
+        (0..probes).filter(move |&j| (number + j as usize * lit / probes as usize) % lit == met)
+    }
+
+    fn add(&mut self, open: f64, visible: bool) {
+        self.made += 1;
+        self.open += open;
+        self.seen2 += if visible { open * open } else { 0.0 };
+    }
+
+    fn ratio(&self) -> f32 {
+        let made = f64::from(self.made);
+        let open = (self.open + WEIGHT) / (made + WEIGHT);
+        let ratio = ((self.seen2 + PRIOR * (SEEN * open).powi(2)) / (made + PRIOR)).sqrt();
+        // A weight may be next to nothing where a point adds much, and the other way round.
+        ratio.clamp(1e-6, 1e6) as f32
+    }
 }
 
 impl<const N: usize> School<'_, N> {
@@ -146,35 +182,99 @@ impl<const N: usize> School<'_, N> {
     }
 }
 
-/// What the probabilities of a table sum to.
-const PARTS: u64 = 1 << 32;
+impl<const N: usize> Table<N> {
+    /// Most bytes of a table of so many nodes.
+    pub(super) fn bytes(nodes: usize) -> usize {
+        nodes * size_of::<Row<N>>()
+    }
 
-impl Table {
-    /// The element that 64 uniform bits choose, its probability, and what is left of them as a number uniform in
-    /// `[0, 1)`; `None` if there are no lights.
+    /// `clusters` are those of the nodes, in order, and the directional lights if there are any.
+    fn new(nodes: &[Divided<N>], clusters: &[Cluster]) -> Self {
+        let mut ratios = clusters.iter().map(Cluster::ratio);
+        let mut row = |divided: &Divided<N>| Row {
+            node: divided.node(),
+            ratios: divided.elements.map(|is| if is { ratios.next().unwrap_or(1.0) } else { 0.0 }),
+        };
+        Self { rows: nodes.iter().map(&mut row).collect(), directional: ratios.next().unwrap_or(0.0) }
+    }
+
+    /// Weighs the clusters at the receiver that `memory` has arrived at; `floor` is the share of picks by their weights
+    /// alone.
+    pub(super) fn weigh<T: Tally>(
+        &self,
+        tree: &Tree<N>,
+        at: &Receiver,
+        floor: f64,
+        memory: &Memory<N>,
+        weighed: &mut Weighed,
+        tally: &mut T,
+    ) {
+        weighed.clear(N * self.rows.len() + 1);
+        for Row { node, ratios } in &self.rows {
+            let weights = tree.weights(*node, at, tally);
+            for slot in (0..N).filter(|&slot| ratios[slot] > 0.0 && weights[slot] > 0.0) {
+                weighed.push(Divided::<N>::element(*node, slot), weights[slot], ratios[slot]);
+            }
+        }
+        let directional: f32 = tree.directional(memory).map(|(_, weight)| weight).sum();
+        if directional > 0.0 {
+            weighed.push(Element::DIRECTIONAL, directional, self.directional);
+        }
+        weighed.settle(floor);
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        size_of_val(&self.rows[..])
+    }
+}
+
+/// Clusters that can add something at a receiver.
+#[derive(Default)]
+pub(super) struct Weighed {
+    elements: Vec<Element>,
+    /// With nothing in between, and what is seen of that.
+    weights: Vec<(f32, f32)>,
+    sums: Cumulative,
+}
+
+impl Weighed {
+    fn clear(&mut self, most: usize) {
+        self.elements.clear();
+        self.elements.reserve(most);
+        self.weights.clear();
+        self.weights.reserve(most);
+        self.sums.clear();
+        self.sums.reserve(most);
+    }
+
     #[inline]
-    pub(super) fn pick(&self, bits: u64) -> Option<(Element, f64, f64)> {
-        let target = (bits >> 32) as u32;
-        let index = self.0.partition_point(|entry| entry.start <= target).checked_sub(1)?;
-        let width = self.width(index);
-        let left = bits - (u64::from(self.0[index].start) << 32);
-        let left = (left as f64 / ((width as f64) * PARTS as f64)).min(1.0 - f64::EPSILON / 2.0);
-        Some((self.0[index].element, width as f64 / PARTS as f64, left))
+    fn push(&mut self, element: Element, weight: f32, ratio: f32) {
+        self.elements.push(element);
+        self.weights.push((weight, ratio));
+    }
+
+    /// Makes probabilities of the weights.
+    fn settle(&mut self, floor: f64) {
+        let (open, seen) = self
+            .weights
+            .iter()
+            .fold((0.0, 0.0), |(open, seen), &(weight, times)| (open + f64::from(weight), seen + f64::from(times)));
+        let (by_open, by_seen) = (floor / open, (1.0 - floor) / seen);
+        for &(weight, ratio) in &self.weights {
+            let share = f64::from(weight) * (by_open + by_seen * f64::from(ratio));
+            // As in a node, none is lost to rounding beside one 10^12 times as strong.
+            self.sums.push(share.max(LEAST_SHARE) as f32);
+        }
+    }
+
+    /// The element that `u` chooses, its probability and what is left of `u`; `None` if nothing can add anything.
+    #[inline]
+    pub(super) fn pick(&self, u: f64) -> Option<(Element, f64, f64)> {
+        self.sums.pick_stretched(u).map(|(index, share, left)| (self.elements[index], share, left))
     }
 
     /// All elements with their probabilities.
     pub(super) fn elements(&self) -> impl Iterator<Item = (Element, f64)> {
-        (0..self.0.len()).map(|i| (self.0[i].element, self.width(i) as f64 / PARTS as f64))
-    }
-
-    /// Probability of an entry, in 2^-32.
-    #[inline]
-    fn width(&self, index: usize) -> u64 {
-        let end = self.0.get(index + 1).map_or(PARTS, |next| u64::from(next.start));
-        end - u64::from(self.0[index].start)
-    }
-
-    pub(super) fn heap_bytes(&self) -> usize {
-        size_of_val(&self.0[..])
+        self.elements.iter().enumerate().map(|(index, element)| (*element, self.sums.pmf(index)))
     }
 }
