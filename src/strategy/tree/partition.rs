@@ -86,8 +86,8 @@ impl Eq for Candidate {}
 impl<const N: usize> Tree<N> {
     /// Most nodes of a partition that is asked for `most` elements.
     pub(in crate::strategy) fn most_divided(&self, most: usize) -> usize {
-        // Each but the root replaces an element by several.
-        (1 + most.saturating_sub(2)).min(self.nodes.len())
+        // Nearly all nodes have more than two slots filled.
+        (1 + most / 2).min(self.nodes.len())
     }
 
     /// Whether there is any directional light.
@@ -110,7 +110,7 @@ impl<const N: usize> Tree<N> {
         }
         let mut count = self.divide(0, region, &mut divided, &mut open, tally);
         while let Some(Candidate { weight, node, of: (place, slot) }) = open.pop() {
-            if weight <= 0.0 || count + N - 1 > most {
+            if weight <= 0.0 || count + N - 1 > most || divided.len() == self.most_divided(most) {
                 break;
             }
             divided[place].elements[slot] = false;

@@ -28,9 +28,6 @@ const PRIOR: f64 = 0.5;
 /// How many probes a cluster's weight counts for, as what there is of it.
 const WEIGHT: f64 = 0.25;
 
-/// Clusters that weigh less than this share of the mean are tried by one probe.
-const MINOR: f32 = 0.1;
-
 /// How tables are learned.
 #[derive(Clone, Copy)]
 pub(super) struct Lesson {
@@ -92,20 +89,16 @@ impl Lesson {
             }
         }
         let count = clusters.len();
-        let rows = |e: usize| weights[e..].iter().step_by(count.max(1));
-        let means: Vec<f32> = (0..count).map(|e| rows(e).sum::<f32>() / tried.len() as f32).collect();
-        let minor = MINOR * means.iter().sum::<f32>() / means.len().max(1) as f32;
-        for (e, (cluster, mean)) in clusters.iter_mut().zip(&means).enumerate() {
-            cluster.lit = rows(e).filter(|weight| **weight > 0.0).count();
-            cluster.probes = if *mean > minor { self.probes } else { 1 };
+        for (e, cluster) in clusters.iter_mut().enumerate() {
+            cluster.lit = weights[e..].iter().step_by(count).filter(|weight| **weight > 0.0).count();
         }
         for (i, at) in tried.iter().enumerate() {
             tree.arrive(at, memory, tally);
             let mut draws = Sequence::new(RunKey { seed: name, run: 0 }, i as u32, Points::Random).pass(0);
             let weights = &weights[i * count..][..count];
             for (e, (cluster, weight)) in clusters.iter_mut().zip(weights).enumerate().filter(|(_, (_, w))| **w > 0.0) {
-                for j in cluster.turn(e) {
-                    let u = (f64::from(j) + draws.stream().uniform64()) / f64::from(cluster.probes);
+                for j in cluster.turn(e, self.probes) {
+                    let u = (f64::from(j) + draws.stream().uniform64()) / f64::from(self.probes);
                     let (value, visible) = school.probe(cluster.element, at, u, &mut draws, memory, tally);
                     cluster.add(value * PI / f64::from(*weight), visible);
                 }
@@ -120,8 +113,7 @@ impl Lesson {
 #[derive(Clone, Copy)]
 struct Cluster {
     element: Element,
-    /// Probes to make, and receivers at which it weighs anything: of all, and of those so far.
-    probes: u32,
+    /// Receivers at which it weighs anything: of all, and of those so far.
     lit: usize,
     met: usize,
     /// Sum over the probes of what each point adds with nothing in between, over its probability and the cluster's weight.
@@ -133,7 +125,7 @@ struct Cluster {
 
 impl Cluster {
     fn new(element: Element) -> Self {
-        Self { element, probes: 0, lit: 0, met: 0, open: 0.0, seen2: 0.0, made: 0 }
+        Self { element, lit: 0, met: 0, open: 0.0, seen2: 0.0, made: 0 }
     }
 
     fn all<const N: usize>(of: &Divided<N>) -> impl Iterator<Item = Self> + use<N> {
@@ -142,8 +134,8 @@ impl Cluster {
     }
 
     /// The probes to make at the next receiver: each cluster at other ones, in equal steps.
-    fn turn(&self, number: usize) -> impl Iterator<Item = u32> + use<> {
-        let Self { probes, lit, met, .. } = *self;
+    fn turn(&self, number: usize, probes: u32) -> impl Iterator<Item = u32> + use<> {
+        let Self { lit, met, .. } = *self;
         (0..probes).filter(move |&j| (number + j as usize * lit / probes as usize) % lit == met)
     }
 
@@ -255,10 +247,9 @@ impl Weighed {
 
     /// Makes probabilities of the weights.
     fn settle(&mut self, floor: f64) {
-        let (open, seen) = self
-            .weights
-            .iter()
-            .fold((0.0, 0.0), |(open, seen), &(weight, times)| (open + f64::from(weight), seen + f64::from(times)));
+        let (open, seen) = self.weights.iter().fold((0.0, 0.0), |(open, seen), &(weight, ratio)| {
+            (open + f64::from(weight), seen + f64::from(weight) * f64::from(ratio))
+        });
         let (by_open, by_seen) = (floor / open, (1.0 - floor) / seen);
         for &(weight, ratio) in &self.weights {
             let share = f64::from(weight) * (by_open + by_seen * f64::from(ratio));
