@@ -24,7 +24,7 @@ use glam::Vec3;
 use runs::Runs;
 
 /// The tree that it falls back to.
-const TREE: &str = "light-tree:arity=4";
+const TREE: &str = "light-tree";
 
 /// Lamps, panels and a moon around a wall, and strong lamps in a closed box on the ground, which nothing sees.
 fn courtyard() -> Parts {

@@ -86,8 +86,8 @@ impl Eq for Candidate {}
 impl<const N: usize> Tree<N> {
     /// Most nodes of a partition that is asked for `most` elements.
     pub(in crate::strategy) fn most_divided(&self, most: usize) -> usize {
-        // Nearly all nodes have more than two slots filled.
-        (1 + most / 2).min(self.nodes.len())
+        // Nearly all nodes have more than half of their slots filled.
+        (1 + 2 * most / N).min(self.nodes.len())
     }
 
     /// Whether there is any directional light.
