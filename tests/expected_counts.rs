@@ -21,7 +21,7 @@ use citylights::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
 
 /// Beside the registry's defaults.
-const VARIANTS: [&str; 10] = [
+const VARIANTS: [&str; 11] = [
     "uniform:picks=4",
     "power:mix=0.2",
     "influence-tail:picks=2,tail=3",
@@ -32,6 +32,7 @@ const VARIANTS: [&str; 10] = [
     "light-tree:far=0.03",
     "light-tree:split=0.5",
     "light-tree:mix=0.2",
+    "visible:picks=3",
 ];
 
 /// Points of a triangle that are tried: near its corners, and its middle.

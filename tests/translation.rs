@@ -211,8 +211,12 @@ fn variances(stage: &Stage) -> Vec<(String, f64)> {
         if info.role != Role::Choosing || info.claim != Claim::Unbiased {
             continue;
         }
-        let sampler = strategy(info.name).expect("a name of the registry");
-        let sampler = sampler.build(BuildContext { stage, seed: 1 }).expect("a sampler");
+        let strategy = strategy(info.name).expect("a name of the registry");
+        // Its probabilities are another's in another unit of length.
+        if !strategy.scale_free() {
+            continue;
+        }
+        let sampler = strategy.build(BuildContext { stage, seed: 1 }).expect("a sampler");
         let mut counts = Vec::new();
         let known = |at| match quality(stage, sampler.as_ref(), at, &mut counts) {
             Finding::Known(quality) => Some(quality.variance),

@@ -21,6 +21,8 @@ pub trait AnyStrategy: Send + Sync {
     fn info(&self) -> Info;
     /// As [`Strategy::gives_candidates`].
     fn gives_candidates(&self) -> bool;
+    /// As [`Strategy::scale_free`].
+    fn scale_free(&self) -> bool;
     /// Builds its sampler for a scene.
     fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>>;
 }
@@ -32,6 +34,10 @@ impl<S: Strategy> AnyStrategy for S {
 
     fn gives_candidates(&self) -> bool {
         Strategy::gives_candidates(self)
+    }
+
+    fn scale_free(&self) -> bool {
+        Strategy::scale_free(self)
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>> {

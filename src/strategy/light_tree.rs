@@ -92,7 +92,13 @@ impl Strategy for LightTree {
 }
 
 impl LightTree {
-    fn sampler<const N: usize>(&self, context: BuildContext<'_>) -> Result<Sampler<N>> {
+    /// The strategy as it comes, but for the number of picks and `far`.
+    pub(super) fn plain(picks: u32, far: f32) -> Result<Self> {
+        Self::configure(&mut Arguments::new(Self::INFO.name, &format!("picks={picks},far={far}"))?)
+    }
+
+    /// A sampler of a tree `N` wide, whatever `arity` says.
+    pub(super) fn sampler<const N: usize>(&self, context: BuildContext<'_>) -> Result<Sampler<N>> {
         let (scene, lights) = (context.stage.scene(), context.stage.lights());
         let tree = Tree::new(scene, lights, self.how);
         let strong = if self.walks.mix > 0.0 && !tree.is_empty() { Some(Strong::new(scene, &tree)?) } else { None };
@@ -134,7 +140,7 @@ impl Strong {
 
 /// What a worker keeps.
 pub struct Scratch<const N: usize> {
-    memory: Memory<N>,
+    pub(super) memory: Memory<N>,
     cut: Cut,
     /// Weights of the directional lights and of the cut's parts, where a walk begins among them.
     sums: Cumulative,
@@ -233,6 +239,10 @@ impl<const N: usize> LightSampler for Sampler<N> {
 }
 
 impl<const N: usize> Sampler<N> {
+    pub(super) fn tree(&self) -> &Tree<N> {
+        &self.tree
+    }
+
     /// A pick of each part of the cut.
     fn sample_cut<T: Tally>(
         &self,

@@ -38,6 +38,7 @@ pub mod tally;
 mod target;
 pub mod tree;
 pub mod uniform;
+pub mod visible;
 
 use crate::base::draws::Draws;
 use crate::base::error::Result;
@@ -154,6 +155,11 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     /// and takes none itself.
     fn gives_candidates(&self) -> bool {
         Self::INFO.role == Role::Choosing
+    }
+    /// Whether it chooses by the same probabilities in the same scene in another unit of length: not if these depend on a
+    /// length in metres, as that which its own shadow rays keep off surfaces.
+    fn scale_free(&self) -> bool {
+        Self::INFO.role != Role::Oracle
     }
     /// Builds the sampler: the set-up phase.
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler>;

@@ -5,7 +5,7 @@ use super::parameters::{Arguments, Parameter};
 use super::{BuildContext, Info, Role, Strategy};
 use super::{
     all, allocate, influence, influence_pick, influence_tail, intensity, light_tree, lightcuts, null, oracle, power,
-    resampled, restir, stochastic_cull, stochastic_lightcuts, uniform,
+    resampled, restir, stochastic_cull, stochastic_lightcuts, uniform, visible,
 };
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
@@ -26,6 +26,7 @@ pub const STRATEGIES: &[Entry] = &[
     Entry::of::<light_tree::LightTree>(),
     Entry::of::<lightcuts::Lightcuts>(),
     Entry::of::<stochastic_lightcuts::StochasticLightcuts>(),
+    Entry::of::<visible::Visible>(),
     Entry::of::<resampled::Resampled>(),
     Entry::of::<restir::Restir>(),
     Entry::of::<oracle::Oracle>(),
@@ -67,6 +68,11 @@ impl Configured {
     /// What it is.
     pub fn info(&self) -> Info {
         self.strategy.info()
+    }
+
+    /// As [`Strategy::scale_free`].
+    pub fn scale_free(&self) -> bool {
+        self.strategy.scale_free()
     }
 
     /// Its parameters.

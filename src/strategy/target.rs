@@ -52,13 +52,20 @@ impl Target {
     /// Of the point on the light, 0 where it is hidden; `of_point` where it is not.
     #[inline]
     pub(super) fn of_visible_point<T: Tally>(&self, pick: &Pick, at: &Receiver, tally: &mut T) -> f32 {
-        let Some(arrival) = self.arrival(pick, at, tally) else { return 0.0 };
-        let Some(occluders) = &self.occluders else { return value(arrival) };
+        let (value, visible) = self.of_point_seen(pick, at, tally);
+        if visible { value } else { 0.0 }
+    }
+
+    /// `of_point`, and whether the point is visible: not asked of one that adds nothing.
+    #[inline]
+    pub(super) fn of_point_seen<T: Tally>(&self, pick: &Pick, at: &Receiver, tally: &mut T) -> (f32, bool) {
+        let Some(arrival) = self.arrival(pick, at, tally) else { return (0.0, false) };
+        let Some(occluders) = &self.occluders else { return (value(arrival), true) };
         let light = &self.scene.lights()[pick.light as usize];
         tally.shadow_rays(1);
         // The very ray that the harness would cast: what is hidden here is hidden there.
         let segment = self.offset.segment(at, light, arrival.direction, arrival.distance);
-        if occluders.visible(&segment) { value(arrival) } else { 0.0 }
+        (value(arrival), occluders.visible(&segment))
     }
 
     #[inline]

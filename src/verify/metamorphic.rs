@@ -20,7 +20,7 @@ use crate::scene::small::{cuboid, point};
 use crate::scene::{Parts, Scene};
 use crate::strategy::erased::AnySampler;
 use crate::strategy::registry::Configured;
-use crate::strategy::{BuildContext, Claim, Role};
+use crate::strategy::{BuildContext, Claim};
 use crate::verify::contract::{picks_in_range, picks_valid};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
@@ -150,7 +150,7 @@ impl<'a> Metamorphic<'a> {
             return Ok(checks);
         }
         // A choice by shadow rays depends on how far they keep off surfaces, which is no length of the scene.
-        if strategy.info().role != Role::Oracle {
+        if strategy.scale_free() {
             checks.extend(self.counts(&*base, &samplers));
         }
         for ((name, ..), subject) in CHANGES.iter().zip(subjects()) {

@@ -14,6 +14,7 @@
 //! | how is a cluster weighed at a receiver? | `node`, [`importance`] |
 //! | how is a light chosen, and with which probability? | `walk` |
 //! | which clusters stand for all lights here? | `cut` |
+//! | which for all lights, whatever the receiver around here? | `partition` |
 //!
 //! Sources: Conty Estevez and Kulla, Proc. ACM CGIT (HPG) 1(2), 2018; wide nodes as in Dammertz, Hanika, Keller, EGSR 2008.
 
@@ -22,6 +23,7 @@ mod build;
 pub mod cut;
 pub mod importance;
 mod node;
+pub(super) mod partition;
 mod split;
 pub mod walk;
 

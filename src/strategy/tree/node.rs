@@ -95,6 +95,16 @@ impl<const N: usize> Node<N> {
         self.link[j] = offset as u32;
     }
 
+    /// The node with all boxes grown on each side by so much: at the middle of a box with these half extents, it is as high
+    /// over a horizon and as near as it is anywhere in that box.
+    pub(super) fn grown(&self, by: Vec3) -> Self {
+        let mut grown = self.clone();
+        for (half, by) in grown.half.iter_mut().zip(by.to_array()) {
+            half.iter_mut().for_each(|half| *half += by);
+        }
+        grown
+    }
+
     /// What is in slot `j`.
     #[inline]
     pub(super) fn slot(&self, j: usize) -> Slot {

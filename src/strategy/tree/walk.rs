@@ -107,8 +107,7 @@ impl<const N: usize> Tree<N> {
     ) -> Option<(LightId, f64)> {
         let share = self.directional_share(at, memory, tally);
         if u < share {
-            let (index, pmf) = memory.directional.pick(u / share)?;
-            return Some((self.directional[index].light, share * pmf));
+            return self.pick_directional(u / share, memory).map(|(light, pmf)| (light, share * pmf));
         }
         if self.nodes.is_empty() {
             return None;
@@ -218,9 +217,7 @@ impl<const N: usize> Tree<N> {
         let mut memory = Memory::default();
         self.arrive(at, &mut memory, &mut crate::strategy::tally::Uncounted);
         let share = self.directional_share(at, &mut memory, &mut crate::strategy::tally::Uncounted);
-        for (i, light) in self.directional.iter().enumerate() {
-            add(counts, light.light, scale * share * memory.directional.pmf(i));
-        }
+        self.expect_directional(scale * share, &memory, counts);
         if !self.nodes.is_empty() {
             self.expect_below(0, at, scale * (1.0 - share), counts);
         }
@@ -252,6 +249,20 @@ impl<const N: usize> Tree<N> {
     pub(in crate::strategy) fn directional(&self, memory: &Memory<N>) -> impl Iterator<Item = (LightId, f32)> {
         let weight = |i| (memory.directional.pmf(i) * memory.directional.total()) as f32;
         self.directional.iter().enumerate().map(move |(i, light)| (light.light, weight(i))).filter(|(_, w)| *w > 0.0)
+    }
+
+    /// A directional light by what it adds, and its probability among them.
+    #[inline]
+    pub(super) fn pick_directional(&self, u: f64, memory: &Memory<N>) -> Option<(LightId, f64)> {
+        let (index, pmf) = memory.directional.pick(u)?;
+        Some((self.directional[index].light, pmf))
+    }
+
+    /// Adds `scale` times the probabilities of [`pick_directional`](Self::pick_directional) to `counts`.
+    pub(super) fn expect_directional(&self, scale: f64, memory: &Memory<N>, counts: &mut [f32]) {
+        for (i, light) in self.directional.iter().enumerate() {
+            add(counts, light.light, scale * memory.directional.pmf(i));
+        }
     }
 
     /// Probability that a directional light is chosen, not one of the tree.

@@ -1,0 +1,185 @@
+//! Which receivers share a table?
+//!
+//! Those in one cube of a grid whose normals have the same greatest component and sign. Cells are known when the sampler is
+//! built; each keeps a few of its receivers, spread over all of them, for its table to be learned at.
+
+use super::table::Table as Learned;
+use super::{TRIED, WIDTH};
+use crate::base::random::hash;
+use crate::scene::receiver::Receiver;
+use crate::strategy::tree::partition::Region;
+use glam::Vec3;
+use std::cmp::Reverse;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+use std::ops::Range;
+use std::sync::OnceLock;
+
+/// How far receivers are moved along their normal before the grid is laid, as a share of a cell: a wall in a plane of
+/// the grid would lie on both sides of it by rounding.
+const LIFT: f32 = 1e-3;
+
+type Table = Learned<WIDTH>;
+
+/// The cells of a scene's receivers.
+#[derive(Default)]
+pub(super) struct Cells {
+    /// Cells a metre.
+    scale: f32,
+    /// The place of each cell by its name.
+    places: HashMap<u64, u32, BuildHasherDefault<Named>>,
+    cells: Vec<Cell>,
+    /// Receivers to learn at, those of each cell together.
+    tried: Vec<Spot>,
+}
+
+/// Receivers that share a table.
+struct Cell {
+    name: u64,
+    low: Vec3,
+    high: Vec3,
+    /// Sum of the normals.
+    normals: Vec3,
+    /// How many of the stage's receivers there are.
+    count: u32,
+    /// Where those to learn at start.
+    first: u32,
+    table: OnceLock<Table>,
+}
+
+/// What shadow rays need to know of a receiver.
+#[derive(Clone, Copy)]
+struct Spot {
+    position: Vec3,
+    normal: Vec3,
+}
+
+impl Spot {
+    fn receiver(self) -> Receiver {
+        let Self { position, normal } = self;
+        Receiver { position, normal, view: normal, albedo: Vec3::ONE, pixel: 0, surface: 0 }
+    }
+}
+
+/// The names are hashes already.
+#[derive(Default)]
+struct Named(u64);
+
+impl Hasher for Named {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, _bytes: &[u8]) {
+        unreachable!("a name is a u64");
+    }
+
+    fn write_u64(&mut self, name: u64) {
+        self.0 = name;
+    }
+}
+
+/// The name of the cell that a receiver is in. Two cells may by chance, one in 10^19, have the same: they then share
+/// a table.
+#[inline]
+fn name(at: &Receiver, scale: f32) -> u64 {
+    let [x, y, z] = (at.position * scale + at.normal * LIFT).floor().to_array().map(|x| x as i32 as u32);
+    let axis = at.normal.abs().max_position();
+    let way = 2 * axis as u64 + u64::from(at.normal[axis] < 0.0);
+    hash(&[u64::from(x) << 32 | u64::from(y), u64::from(z) << 32 | way])
+}
+
+impl Cell {
+    fn new(name: u64) -> Self {
+        let (low, high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        Self { name, low, high, normals: Vec3::ZERO, count: 0, first: 0, table: OnceLock::new() }
+    }
+
+    fn add(&mut self, at: &Receiver) {
+        self.low = self.low.min(at.position);
+        self.high = self.high.max(at.position);
+        self.normals += at.normal;
+        self.count += 1;
+    }
+
+    /// How many receivers it is learned at.
+    fn tried(&self) -> u32 {
+        self.count.min(TRIED as u32)
+    }
+
+    fn spots(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.tried()) as usize
+    }
+
+    fn region(&self) -> Region {
+        let (centre, half) = (0.5 * self.low + 0.5 * self.high, 0.5 * self.high - 0.5 * self.low);
+        Region { middle: Spot { position: centre, normal: self.normals.normalize() }.receiver(), half }
+    }
+}
+
+impl Cells {
+    /// The cells with `side` in metres of all receivers. If their tables of `table` bytes each do not fit into `memory`
+    /// bytes, only those with the most receivers are kept.
+    pub(super) fn new(receivers: &[Receiver], side: f32, memory: usize, table: usize) -> Self {
+        let scale = 1.0 / side;
+        let mut places = HashMap::default();
+        let mut cells: Vec<Cell> = Vec::new();
+        for at in receivers {
+            let name = name(at, scale);
+            let place = *places.entry(name).or_insert_with(|| {
+                cells.push(Cell::new(name));
+                cells.len() as u32 - 1
+            });
+            cells[place as usize].add(at);
+        }
+        let each = size_of::<Cell>() + TRIED * size_of::<Spot>() + table + 2 * size_of::<(u64, u32)>();
+        // The first of as many receivers come first: the sort is stable.
+        cells.sort_by_key(|cell| Reverse(cell.count));
+        cells.truncate(memory / each);
+        cells.shrink_to_fit();
+        places = cells.iter().zip(0..).map(|(cell, place)| (cell.name, place)).collect();
+        let mut first = 0;
+        for cell in &mut cells {
+            cell.first = first;
+            first += cell.tried();
+        }
+        let mut tried = vec![Spot { position: Vec3::ZERO, normal: Vec3::Z }; first as usize];
+        let mut met = vec![0u32; cells.len()];
+        for at in receivers {
+            let Some(&place) = places.get(&name(at, scale)) else { continue };
+            let (cell, met) = (&cells[place as usize], &mut met[place as usize]);
+            // In equal steps through the cell's receivers, which are neighbours together.
+            let upto = |met: u32| (u64::from(met) * u64::from(cell.tried()) / u64::from(cell.count)) as u32;
+            let (before, after) = (upto(*met), upto(*met + 1));
+            if after > before {
+                tried[(cell.first + before) as usize] = Spot { position: at.position, normal: at.normal };
+            }
+            *met += 1;
+        }
+        Self { scale, places, cells, tried }
+    }
+
+    /// The cell that a receiver is in; `None` if it has no table.
+    #[inline]
+    pub(super) fn find(&self, at: &Receiver) -> Option<u32> {
+        if self.cells.is_empty() { None } else { self.places.get(&name(at, self.scale)).copied() }
+    }
+
+    /// The table of a cell; `learn` makes it of the cell's region, the receivers to try and the cell's name.
+    #[inline]
+    pub(super) fn table(&self, cell: u32, learn: impl FnOnce(&Region, &[Receiver], u64) -> Table) -> &Table {
+        let cell = &self.cells[cell as usize];
+        cell.table.get_or_init(|| {
+            let tried: Vec<Receiver> = self.tried[cell.spots()].iter().map(|spot| spot.receiver()).collect();
+            learn(&cell.region(), &tried, cell.name)
+        })
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        let tables = self.cells.iter().filter_map(|cell| cell.table.get()).map(Table::heap_bytes).sum::<usize>();
+        size_of_val(&self.cells[..])
+            + size_of_val(&self.tried[..])
+            + self.places.capacity() * size_of::<(u64, u32)>()
+            + tables
+    }
+}
