@@ -74,7 +74,9 @@ case $FAKE in
     lazy) exit 0 ;;
     hanging) exec sleep 100 ;;
     unasked) echo '{"kind":"image","seed":1,"spp":3,"setup_s":0,"cpu_s":0,"wall_s":0,"file":"x"}' ;;
-    nowhere) echo "{\"kind\":\"image\",\"seed\":${seeds%%,*},\"spp\":1,\"setup_s\":0,\"cpu_s\":0,\"wall_s\":0,\"file\":\"x\"}" ;;
+    nowhere) echo "{\"kind\":\"image\",\"seed\":${seeds%%,*},\"spp\":1,\"setup_s\":0,\"cpu_s\":1,\"wall_s\":0,\"file\":\"x\"}" ;;
+    outside) echo "{\"kind\":\"image\",\"seed\":${seeds%%,*},\"spp\":1,\"setup_s\":0,\"cpu_s\":1,\"wall_s\":0,\"file\":\"../run.json\"}" ;;
+    instant) echo "{\"kind\":\"image\",\"seed\":${seeds%%,*},\"spp\":1,\"setup_s\":0,\"cpu_s\":0,\"wall_s\":0,\"file\":\"x\"}" ;;
     untimely) echo "{\"kind\":\"image\",\"seed\":${seeds%%,*},\"spp\":1,\"setup_s\":0,\"cpu_s\":-1,\"wall_s\":0,\"file\":\"x\"}" ;;
 esac
 for seed in $(echo "$seeds" | tr , ' '); do
@@ -188,7 +190,7 @@ fn images_of_peers_become_rows_marked_external() {
     assert!(asked[1].contains("mitsuba_peer.py") && asked[1].contains("--spp 1,4 --seeds "), "{heard}");
     assert!(!out.join("peers").exists() && !out.join("films").exists(), "something was left behind");
     let svg = std::fs::read_to_string(out.join("lamp.svg")).expect("a plot");
-    assert!(svg.contains("dotted: other renderers"), "{svg}");
+    assert!(svg.contains("not drawn: mitsuba"), "{svg}");
     let mut report = Command::cargo_bin("citylights").expect("the binary");
     report.arg("report").arg(&out).arg("--check").assert().success();
 }
@@ -234,6 +236,8 @@ fn whatever_a_peer_does_wrong_is_its_row_and_the_comparison_goes_on() {
         ("lazy", "reference.exr", "gave no image of seed"),
         ("unasked", "reference.exr", "gave an image nobody asked for: seed 1, 3 spp"),
         ("nowhere", "reference.exr", "cannot read"),
+        ("outside", "reference.exr", "gave `../run.json`, which is no plain file name"),
+        ("instant", "reference.exr", "gave times of"),
         ("untimely", "reference.exr", "gave times of"),
         ("good", "half.exr", "gave an image of 16 x 9 pixels where 32 x 18 are right"),
         ("good", "broken.exr", "infinite or undefined radiance"),
