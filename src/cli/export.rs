@@ -31,11 +31,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     }
     let bytes: usize = export.files.iter().map(|(_, bytes)| bytes.len()).sum();
     print(&format!(
-        "{}: {} lights and {} surfaces in {} files of {bytes} bytes\n",
+        "{}: {} lights and {} surfaces, {bytes} bytes\n",
         scene.name(),
         scene.lights().len(),
-        scene.surfaces().len(),
-        export.files.len()
+        scene.surfaces().len()
     ))?;
     Ok(Outcome::Done)
 }
