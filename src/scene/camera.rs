@@ -42,7 +42,8 @@ impl Camera {
         if !(fov > 0.0 && fov < 180.0) {
             return Err(Error::Invalid(format!("the field of view is {fov} degrees; it must lie between 0 and 180")));
         }
-        let (forward, right) = (forward.normalize_or_zero(), forward.cross(up).normalize_or_zero());
+        let forward = forward.normalize_or_zero();
+        let right = forward.cross(up).normalize_or_zero();
         if !position.is_finite() || forward == DVec3::ZERO || right == DVec3::ZERO {
             return Err(Error::Invalid(format!(
                 "the camera at {position} needs finite directions forward and up that are not parallel"
