@@ -23,41 +23,7 @@ fn recipe(folder: &Path, text: &str) -> PathBuf {
     file
 }
 
-const LAMP: &str = r#"
-name = "lamp"
-seed = 1
-version = 1
-ev100 = 3.0
-
-[camera]
-position = [0.0, -8.0, 3.0]
-target = [0.0, 0.0, 0.0]
-fov = 50
-resolution = [32, 18]
-
-[ground]
-size = 100
-material = "paving"
-
-[materials.paving]
-albedo = [0.3, 0.3, 0.3]
-street = true
-
-[[box]]
-low = [1.0, 0.0, 0.0]
-high = [2.0, 1.0, 2.0]
-material = "paving"
-
-[[light]]
-kind = "point"
-position = [0.0, 0.0, 6.0]
-intensity = 100
-
-[[light]]
-kind = "point"
-position = [4.0, 2.0, 5.0]
-intensity = 60
-"#;
+const LAMP: &str = include_str!("data/lamp.toml");
 
 #[test]
 fn unknown_names_are_refused_with_near_ones() {

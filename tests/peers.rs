@@ -21,40 +21,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-const LAMP: &str = r#"
-name = "lamp"
-seed = 1
-version = 1
-ev100 = 3.0
-
-[camera]
-position = [0.0, -8.0, 3.0]
-target = [0.0, 0.0, 0.0]
-fov = 50
-resolution = [32, 18]
-
-[ground]
-size = 100
-material = "paving"
-
-[materials.paving]
-albedo = [0.3, 0.3, 0.3]
-
-[[box]]
-low = [1.0, 0.0, 0.0]
-high = [2.0, 1.0, 2.0]
-material = "paving"
-
-[[light]]
-kind = "point"
-position = [0.0, 0.0, 6.0]
-intensity = 100
-
-[[light]]
-kind = "point"
-position = [4.0, 2.0, 5.0]
-intensity = 60
-"#;
+const LAMP: &str = include_str!("data/lamp.toml");
 
 /// Called as Python is: SCRIPT SCENE --out FOLDER --spp LIST --seeds LIST [more]. FAKE says what it does, IMAGE is what
 /// it renders, HEARD is where it writes down what it was asked.
