@@ -207,12 +207,12 @@ fn memory_is_bounded_and_what_is_left_out_does_not_depend_on_threads() {
         pool.install(|| plan.run_parallel(1, &mut film));
         (bits(&film.image()), sampler.heap_bytes() - tree)
     };
-    let (some, bytes) = film("visible:cell=0.5,memory=1,probes=1", 1);
-    let (all, more) = film("visible:cell=0.5,memory=64,probes=1", 1);
+    let (some, bytes) = film("visible:cell=0.5,least=1,cut=96,memory=1,probes=1", 1);
+    let (all, more) = film("visible:cell=0.5,least=1,cut=96,memory=64,probes=1", 1);
     println!("{bytes} bytes of tables, {more} without a bound");
     assert!(bytes <= 1_000_000 && bytes > 300_000 && more > 1_500_000, "{bytes} and {more}");
     assert_ne!(some, all);
-    assert_eq!(some, film("visible:cell=0.5,memory=1,probes=1", 2).0);
+    assert_eq!(some, film("visible:cell=0.5,least=1,cut=96,memory=1,probes=1", 2).0);
 }
 
 #[test]
@@ -222,6 +222,7 @@ fn impossible_parameters_are_refused_with_what_is_allowed() {
         ("visible:cell=0", "0.01 to 100000"),
         ("visible:cell=-3", "0.01 to 100000"),
         ("visible:cell=NaN", "0.01 to 100000"),
+        ("visible:least=0", "1 to 65536"),
         ("visible:cut=0", "1 to 4096"),
         ("visible:probes=0", "1 to 256"),
         ("visible:floor=0", "0.001 to 1"),

@@ -80,7 +80,7 @@ impl<const N: usize> Shares<N> {
 }
 
 /// The greatest number below 1.
-const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+pub(in crate::strategy) const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 impl<const N: usize> Tree<N> {
     /// Comes to a receiver: forgets what was worked out elsewhere.

@@ -1,7 +1,8 @@
 //! Which receivers share a table?
 //!
-//! Those in one cube of a grid whose normals have the same greatest component and sign. Cells are known when the sampler is
-//! built; each keeps a few of its receivers, spread over all of them, for its table to be learned at.
+//! Those in one cube of a grid whose normals have the same greatest component and sign. Where they are few, as far from the
+//! camera, the cube is one of a coarser grid, and holds those alone that found no company in a finer one. Cells are known when
+//! the sampler is built; each keeps a few of its receivers, spread over all of them, for its table to be learned at.
 
 use super::table::Table as Learned;
 use super::{TRIED, WIDTH};
@@ -21,11 +22,14 @@ const LIFT: f32 = 1e-3;
 
 type Table = Learned<WIDTH>;
 
+/// Grids, each of twice the side of the one before.
+const GRIDS: i32 = 4;
+
 /// The cells of a scene's receivers.
 #[derive(Default)]
 pub(super) struct Cells {
-    /// Cells a metre.
-    scale: f32,
+    /// Cells a metre, the smallest first.
+    scales: Vec<f32>,
     /// The place of each cell by its name.
     places: HashMap<u64, u32, BuildHasherDefault<Named>>,
     cells: Vec<Cell>,
@@ -79,14 +83,14 @@ impl Hasher for Named {
     }
 }
 
-/// The name of the cell that a receiver is in. Two cells may by chance, one in 10^19, have the same: they then share
+/// The name of the cell of that size that a receiver is in. Two cells may by chance, one in 10^19, have the same: they then share
 /// a table.
 #[inline]
 fn name(at: &Receiver, scale: f32) -> u64 {
     let [x, y, z] = (at.position * scale + at.normal * LIFT).floor().to_array().map(|x| x as i32 as u32);
     let axis = at.normal.abs().max_position();
     let way = 2 * axis as u64 + u64::from(at.normal[axis] < 0.0);
-    hash(&[u64::from(x) << 32 | u64::from(y), u64::from(z) << 32 | way])
+    hash(&[u64::from(x) << 32 | u64::from(y), u64::from(z) << 32 | way, u64::from(scale.to_bits())])
 }
 
 impl Cell {
@@ -118,51 +122,68 @@ impl Cell {
 }
 
 impl Cells {
-    /// The cells with `side` in metres of all receivers. If their tables of `table` bytes each do not fit into `memory`
-    /// bytes, only those with the most receivers are kept.
-    pub(super) fn new(receivers: &[Receiver], side: f32, memory: usize, table: usize) -> Self {
-        let scale = 1.0 / side;
-        let mut places = HashMap::default();
+    /// The cells of all receivers: of `side` in metres, or of twice that and so on where fewer than `least` are in one. If their
+    /// tables of `table` bytes each do not fit into `memory` bytes, only those with the most receivers are kept.
+    pub(super) fn new(receivers: &[Receiver], side: f32, least: u32, memory: usize, table: usize) -> Self {
         let mut cells: Vec<Cell> = Vec::new();
-        for at in receivers {
-            let name = name(at, scale);
-            let place = *places.entry(name).or_insert_with(|| {
-                cells.push(Cell::new(name));
-                cells.len() as u32 - 1
-            });
-            cells[place as usize].add(at);
+        let mut left: Vec<&Receiver> = receivers.iter().collect();
+        let mut scales = Vec::new();
+        for grid in 0..GRIDS {
+            let scale = 0.5f32.powi(grid) / side;
+            let mut places = HashMap::<u64, usize, BuildHasherDefault<Named>>::default();
+            let mut here: Vec<Cell> = Vec::new();
+            for at in &left {
+                let name = name(at, scale);
+                let place = *places.entry(name).or_insert_with(|| {
+                    here.push(Cell::new(name));
+                    here.len() - 1
+                });
+                here[place].add(at);
+            }
+            left.retain(|at| here[places[&name(at, scale)]].count < least);
+            cells.extend(here.into_iter().filter(|cell| cell.count >= least));
+            scales.push(scale);
         }
         let each = size_of::<Cell>() + TRIED * size_of::<Spot>() + table + 2 * size_of::<(u64, u32)>();
         // The first of as many receivers come first: the sort is stable.
         cells.sort_by_key(|cell| Reverse(cell.count));
         cells.truncate(memory / each);
         cells.shrink_to_fit();
-        places = cells.iter().zip(0..).map(|(cell, place)| (cell.name, place)).collect();
         let mut first = 0;
         for cell in &mut cells {
             cell.first = first;
             first += cell.tried();
         }
-        let mut tried = vec![Spot { position: Vec3::ZERO, normal: Vec3::Z }; first as usize];
-        let mut met = vec![0u32; cells.len()];
+        let places = cells.iter().zip(0..).map(|(cell, place)| (cell.name, place)).collect();
+        let tried = vec![Spot { position: Vec3::ZERO, normal: Vec3::Z }; first as usize];
+        let mut found = Self { scales, places, cells, tried };
+        found.spread(receivers);
+        found
+    }
+
+    /// Chooses the receivers to try.
+    fn spread(&mut self, receivers: &[Receiver]) {
+        let mut met = vec![0u32; self.cells.len()];
         for at in receivers {
-            let Some(&place) = places.get(&name(at, scale)) else { continue };
-            let (cell, met) = (&cells[place as usize], &mut met[place as usize]);
+            let Some(place) = self.find(at) else { continue };
+            let (cell, met) = (&self.cells[place as usize], &mut met[place as usize]);
             // In equal steps through the cell's receivers, which are neighbours together.
             let upto = |met: u32| (u64::from(met) * u64::from(cell.tried()) / u64::from(cell.count)) as u32;
             let (before, after) = (upto(*met), upto(*met + 1));
             if after > before {
-                tried[(cell.first + before) as usize] = Spot { position: at.position, normal: at.normal };
+                self.tried[(cell.first + before) as usize] = Spot { position: at.position, normal: at.normal };
             }
             *met += 1;
         }
-        Self { scale, places, cells, tried }
     }
 
     /// The cell that a receiver is in; `None` if it has no table.
     #[inline]
     pub(super) fn find(&self, at: &Receiver) -> Option<u32> {
-        if self.cells.is_empty() { None } else { self.places.get(&name(at, self.scale)).copied() }
+        if self.cells.is_empty() {
+            return None;
+        }
+        self.scales.iter().find_map(|&scale| self.places.get(&name(at, scale)).copied())
     }
 
     /// The table of a cell; `learn` makes it of the cell's region, the receivers to try and the cell's name.

@@ -8,7 +8,8 @@
 //! learned: a bad table costs noise, and no light that can add anything is ever out of reach.
 //!
 //! One probability a cluster for the whole cell, without the receiver's own weights, makes cheaper samples and outliers: on
-//! first-night 1.8 to 4.9 times the error without the worst 0.1 % of pixels.
+//! first-night 1.8 to 4.9 times the error without the worst 0.1 % of pixels. Probes in proportion to a root of the clusters'
+//! weights, instead of as many of each, change little at best (a tenth less error on downtown) and make outliers at worst.
 //!
 //! | question | where |
 //! |---|---|
@@ -19,8 +20,10 @@
 //! nothing that is sampled. It is made when a receiver of its cell is first arrived at, on that receiver's thread; a second
 //! thread that comes meanwhile waits for it. So it does not matter who makes it, and its cost falls into the first pass.
 //!
-//! Receivers that share no table choose by `light-tree` as it comes: those of no cell, those of cells beyond the bound on
-//! memory, and all where nothing can stand in between or there is no choice.
+//! Where fewer than `least` receivers are in a cell, its probes would cost more than what they save: on `stadium`, with cells of
+//! 8 m and a table however few they are, the first pass takes three times as long. So the cells of such receivers are doubled,
+//! up to three times, until there are enough. Receivers that even then share no table choose by `light-tree` as it comes, and so
+//! do those of cells beyond the bound on memory, and all where nothing can stand in between or there is no choice.
 //!
 //! Source: this project; clusters of a light tree with learned weights as in Wang et al., ACM TOG 40(6), 2021.
 
@@ -51,9 +54,9 @@ const TRIED: usize = 8;
 pub struct Visible {
     /// Side of a cell in metres.
     cell: f32,
+    /// Fewest receivers of a cell with a table.
+    least: u32,
     lesson: Lesson,
-    /// Share of picks with nothing in between.
-    floor: f64,
     picks: u32,
     /// As of the tree.
     far: f32,
@@ -72,24 +75,25 @@ impl Strategy for Visible {
     type Sampler = Sampler;
 
     fn configure(arguments: &mut Arguments) -> Result<Self> {
-        let cell = "side in metres of the cells whose receivers share a table, one for each way that they face";
-        let cell = arguments.real("cell", 4.0, 0.01..=100_000.0, cell)?;
-        // The defaults: on downtown, 64 passes, cells of 2 to 12 m, 96 to 192 clusters, 4 or 8 probes and floors of 0.2 to
-        // 0.4 stay within 1.6 times of the least error x CPU s. A floor of 0.1 leaves outliers: on first-night the error is
-        // 2.1 times that without the worst 0.1 % of pixels, with cells of 3 m, where it is 1.2 times with 0.2.
+        // All defaults lie where error x CPU s hardly depends on them: see `study visible`.
+        let cell =
+            "side in metres of the smallest cells whose receivers share a table, one for each way that they face";
+        let cell = arguments.real("cell", 8.0, 0.01..=100_000.0, cell)?;
+        let least =
+            "fewest receivers of a cell with a table: those of cells with fewer share one of twice the side, and so on";
+        let least = arguments.count("least", 32, 1..=65_536, least)?;
         let cut = "most clusters of a table, or those of the tree's root if they are more";
-        let cut = arguments.count("cut", 96, 1..=4096, cut)?;
+        let cut = arguments.count("cut", 256, 1..=4096, cut)?;
         let probes = arguments.count("probes", 4, 1..=256, "shadow rays that each cluster of a table is tried by")?;
-        let floor =
-            "share of picks by what clusters could add with nothing in between, so that each light stays within reach";
-        let floor = arguments.real("floor", 0.2, 0.001..=1.0, floor)?;
+        let floor = "about the share of picks by what clusters could add with nothing in between: each light stays within reach";
+        let floor = arguments.real("floor", 0.25, 0.001..=1.0, floor)?;
         let picks = arguments.count("picks", 1, 1..=1024, "lights drawn a pass")?;
         let far = "as that of `light-tree`; 0 for never";
         let far = arguments.real("far", 0.0, 0.0..=1.0, far)?;
         let memory = "most MB of all tables; cells of few receivers have none where it does not suffice";
         let memory = arguments.count("memory", 16, 0..=65_536, memory)?;
-        let lesson = Lesson { cut: cut as usize, probes };
-        Ok(Self { cell, lesson, floor: floor.into(), picks, far, memory: memory as usize * 1_000_000 })
+        let lesson = Lesson { cut: cut as usize, probes, floor: floor.into() };
+        Ok(Self { cell, least, lesson, picks, far, memory: memory as usize * 1_000_000 })
     }
 
     fn scale_free(&self) -> bool {
@@ -102,13 +106,13 @@ impl Strategy for Visible {
         // With one light there is no choice, and with nothing in between nothing to learn.
         let cells = if stage.needs().occlusion && stage.lights().len() > 1 {
             let table = Table::<WIDTH>::bytes(tree.tree().most_divided(self.lesson.cut));
-            Cells::new(stage.receivers(), self.cell, self.memory, table)
+            Cells::new(stage.receivers(), self.cell, self.least, self.memory, table)
         } else {
             Cells::default()
         };
         let seed = hash(&[context.seed, u64::from_le_bytes(*b"visible:")]);
-        let Self { lesson, floor, picks, .. } = *self;
-        Ok(Sampler { tree, cells, target: Target::new(context), lesson, floor, picks, seed })
+        let Self { lesson, picks, .. } = *self;
+        Ok(Sampler { tree, cells, target: Target::new(context), lesson, picks, seed })
     }
 }
 
@@ -119,7 +123,6 @@ pub struct Sampler {
     cells: Cells,
     target: Target,
     lesson: Lesson,
-    floor: f64,
     picks: u32,
     /// Of the probes.
     seed: u64,
@@ -132,7 +135,7 @@ pub struct Scratch {
     /// Whether the receiver that was arrived at has a table.
     learned: bool,
     /// By that table.
-    weighed: Weighed,
+    weighed: Weighed<WIDTH>,
 }
 
 impl Sampler {
@@ -146,7 +149,7 @@ impl Sampler {
             self.lesson.learn(school, region, tried, hash(&[self.seed, name]), memory, tally)
         });
         tree.arrive(at, memory, tally);
-        table.weigh(tree, at, self.floor, memory, weighed, tally);
+        table.weigh(tree, at, memory, weighed, tally);
         true
     }
 }

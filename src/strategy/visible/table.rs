@@ -5,10 +5,9 @@
 //! own weights times what the cell has learned: a cluster below its horizon has no chance, a near one has more.
 //!
 //! Ratios are learned by a few probes: a receiver of the cell, a walk inside the cluster, a point on the light, a shadow ray.
-//! Few probes may all be blocked, or all by luck not: a prior, that a cluster is seen in part, counts as half a probe. And a
-//! share of all picks goes by the weights alone, for what no probe has seen.
+//! Few probes may all be blocked, or all by luck not: a prior, that half of it is seen, counts as one more probe. And no
+//! cluster's factor is less than a share of the cell's mean, for what no probe has seen.
 
-use crate::base::discrete::Cumulative;
 use crate::base::draws::{Draws, Points, Sequence};
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
@@ -18,13 +17,13 @@ use crate::strategy::tally::Tally;
 use crate::strategy::target::Target;
 use crate::strategy::tree::Tree;
 use crate::strategy::tree::partition::{Divided, Element, Region};
-use crate::strategy::tree::walk::{LEAST_SHARE, Memory};
+use crate::strategy::tree::walk::{ALMOST_ONE, LEAST_SHARE, Memory};
 use std::f64::consts::PI;
 
-/// Root mean square of what is seen of a cluster over the mean of what there is: what is thought of it before any probe.
-const SEEN: f64 = 0.3;
+/// How much is seen of a cluster, as a share of what there is: what is thought of it before any probe.
+const SEEN: f64 = 0.5;
 /// How many probes that counts for.
-const PRIOR: f64 = 0.5;
+const PRIOR: f64 = 1.0;
 /// How many probes a cluster's weight counts for, as what there is of it.
 const WEIGHT: f64 = 0.25;
 
@@ -35,21 +34,24 @@ pub(super) struct Lesson {
     pub(super) cut: usize,
     /// Probes of each.
     pub(super) probes: u32,
+    /// About the share of picks by weights alone.
+    pub(super) floor: f64,
 }
 
 /// Clusters of all lights, each with what is seen of it over its weight.
 pub(super) struct Table<const N: usize> {
     rows: Box<[Row<N>]>,
-    /// Of the directional lights.
-    directional: f32,
 }
+
+/// In place of a node: the row whose first slot is all directional lights.
+const DIRECTIONAL: u32 = u32::MAX;
 
 /// The clusters in a node's slots.
 #[derive(Clone, Copy)]
-pub(super) struct Row<const N: usize> {
+struct Row<const N: usize> {
     node: u32,
-    /// 0 of a slot that is no cluster here.
-    ratios: [f32; N],
+    /// What their weights are multiplied with; 0 of a slot that is no cluster here.
+    factors: [f32; N],
 }
 
 /// What tables are learned of.
@@ -105,7 +107,21 @@ impl Lesson {
                 cluster.met += 1;
             }
         }
-        Table::new(&nodes, &clusters)
+        for of_receiver in weights.chunks(count.max(1)) {
+            let total: f64 = of_receiver.iter().map(|&weight| f64::from(weight)).sum();
+            for (cluster, &weight) in clusters.iter_mut().zip(of_receiver).filter(|_| total > 0.0) {
+                cluster.share += f64::from(weight) / total;
+            }
+        }
+        Table::new(&nodes, self.factors(&clusters))
+    }
+
+    /// What the clusters' weights are to be multiplied with: what is seen of each, over the mean of that, and the floor.
+    fn factors(&self, clusters: &[Cluster]) -> impl Iterator<Item = f32> {
+        let sums = clusters.iter().fold([0.0; 2], |[seen, all], c| [seen + c.share * c.seen(), all + c.share]);
+        let mean = if sums[0] > 0.0 { sums[0] / sums[1] } else { 1.0 };
+        let floor = self.floor;
+        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor) as f32)
     }
 }
 
@@ -116,16 +132,19 @@ struct Cluster {
     /// Receivers at which it weighs anything: of all, and of those so far.
     lit: usize,
     met: usize,
-    /// Sum over the probes of what each point adds with nothing in between, over its probability and the cluster's weight.
-    open: f64,
-    /// Sum of the squares, of those that are visible.
+    /// Its share of the weights at a receiver, summed over the receivers.
+    share: f64,
+    /// Sum over the probes of the square of what each point adds with nothing in between, over its probability and the
+    /// cluster's weight.
+    open2: f64,
+    /// The same of those that are visible.
     seen2: f64,
     made: u32,
 }
 
 impl Cluster {
     fn new(element: Element) -> Self {
-        Self { element, lit: 0, met: 0, open: 0.0, seen2: 0.0, made: 0 }
+        Self { element, lit: 0, met: 0, share: 0.0, open2: 0.0, seen2: 0.0, made: 0 }
     }
 
     fn all<const N: usize>(of: &Divided<N>) -> impl Iterator<Item = Self> + use<N> {
@@ -141,16 +160,20 @@ impl Cluster {
 
     fn add(&mut self, open: f64, visible: bool) {
         self.made += 1;
-        self.open += open;
+        self.open2 += open * open;
         self.seen2 += if visible { open * open } else { 0.0 };
     }
 
-    fn ratio(&self) -> f32 {
-        let made = f64::from(self.made);
-        let open = (self.open + WEIGHT) / (made + WEIGHT);
-        let ratio = ((self.seen2 + PRIOR * (SEEN * open).powi(2)) / (made + PRIOR)).sqrt();
+    /// Root mean square, over what it weighs, of what its points add with nothing in between.
+    fn open(&self) -> f64 {
         // A weight may be next to nothing where a point adds much, and the other way round.
-        ratio.clamp(1e-6, 1e6) as f32
+        ((self.open2 + WEIGHT) / (f64::from(self.made) + WEIGHT)).sqrt().clamp(1e-6, 1e6)
+    }
+
+    /// The same with what is in between.
+    fn seen(&self) -> f64 {
+        let thought = SEEN * self.open();
+        ((self.seen2 + PRIOR * thought * thought) / (f64::from(self.made) + PRIOR)).sqrt()
     }
 }
 
@@ -177,42 +200,57 @@ impl<const N: usize> School<'_, N> {
 impl<const N: usize> Table<N> {
     /// Most bytes of a table of so many nodes.
     pub(super) fn bytes(nodes: usize) -> usize {
-        nodes * size_of::<Row<N>>()
+        (nodes + 1) * size_of::<Row<N>>()
     }
 
-    /// `clusters` are those of the nodes, in order, and the directional lights if there are any.
-    fn new(nodes: &[Divided<N>], clusters: &[Cluster]) -> Self {
-        let mut ratios = clusters.iter().map(Cluster::ratio);
-        let mut row = |divided: &Divided<N>| Row {
-            node: divided.node(),
-            ratios: divided.elements.map(|is| if is { ratios.next().unwrap_or(1.0) } else { 0.0 }),
-        };
-        Self { rows: nodes.iter().map(&mut row).collect(), directional: ratios.next().unwrap_or(0.0) }
+    /// The factors are those of the nodes' clusters, in order, and of the directional lights if there are any.
+    fn new(nodes: &[Divided<N>], mut factors: impl Iterator<Item = f32>) -> Self {
+        let mut next = |is: bool| if is { factors.next().unwrap_or(1.0) } else { 0.0 };
+        let row = |divided: &Divided<N>| Row { node: divided.node(), factors: divided.elements.map(&mut next) };
+        let mut rows: Vec<Row<N>> = nodes.iter().map(row).collect();
+        rows.extend(factors.next().map(|factor| {
+            let mut factors = [0.0; N];
+            factors[0] = factor;
+            Row { node: DIRECTIONAL, factors }
+        }));
+        Self { rows: rows.into() }
     }
 
-    /// Weighs the clusters at the receiver that `memory` has arrived at; `floor` is the share of picks by their weights
-    /// alone.
+    /// Weighs the clusters at the receiver that `memory` has arrived at.
     pub(super) fn weigh<T: Tally>(
         &self,
         tree: &Tree<N>,
         at: &Receiver,
-        floor: f64,
         memory: &Memory<N>,
-        weighed: &mut Weighed,
+        weighed: &mut Weighed<N>,
         tally: &mut T,
     ) {
-        weighed.clear(N * self.rows.len() + 1);
-        for Row { node, ratios } in &self.rows {
-            let weights = tree.weights(*node, at, tally);
-            for slot in (0..N).filter(|&slot| ratios[slot] > 0.0 && weights[slot] > 0.0) {
-                weighed.push(Divided::<N>::element(*node, slot), weights[slot], ratios[slot]);
+        let Weighed { rows, ends } = weighed;
+        rows.clear();
+        rows.reserve(self.rows.len());
+        ends.clear();
+        ends.reserve(self.rows.len());
+        // Slot by slot, so that all slots of a row are added together.
+        let mut sums = [0.0; N];
+        for Row { node, factors } in &self.rows {
+            let weights = match *node {
+                DIRECTIONAL => [tree.directional(memory).map(|(_, weight)| weight).sum(); N],
+                node => tree.weights(node, at, tally),
+            };
+            let shares = std::array::from_fn(|slot| (weights[slot] * factors[slot]).min(f32::MAX));
+            sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += f64::from(share));
+            rows.push(Shares { node: *node, shares });
+        }
+        // As in a node, none is lost to rounding beside one 10^12 times as strong, nor to underflow.
+        let least = ((sums.iter().sum::<f64>() * LEAST_SHARE) as f32).max(f32::MIN_POSITIVE);
+        let mut end = 0.0;
+        for Shares { shares, .. } in rows {
+            for share in shares.iter_mut() {
+                *share = if *share > 0.0 { share.max(least) } else { 0.0 };
             }
+            end = shares.iter().fold(end, |end, &share| end + f64::from(share));
+            ends.push(end);
         }
-        let directional: f32 = tree.directional(memory).map(|(_, weight)| weight).sum();
-        if directional > 0.0 {
-            weighed.push(Element::DIRECTIONAL, directional, self.directional);
-        }
-        weighed.settle(floor);
     }
 
     pub(super) fn heap_bytes(&self) -> usize {
@@ -220,52 +258,55 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// Clusters that can add something at a receiver.
+/// The chances of all clusters at a receiver.
 #[derive(Default)]
-pub(super) struct Weighed {
-    elements: Vec<Element>,
-    /// With nothing in between, and what is seen of that.
-    weights: Vec<(f32, f32)>,
-    sums: Cumulative,
+pub(super) struct Weighed<const N: usize> {
+    rows: Vec<Shares<N>>,
+    /// Sums of the shares up to the end of each row.
+    ends: Vec<f64>,
 }
 
-impl Weighed {
-    fn clear(&mut self, most: usize) {
-        self.elements.clear();
-        self.elements.reserve(most);
-        self.weights.clear();
-        self.weights.reserve(most);
-        self.sums.clear();
-        self.sums.reserve(most);
-    }
+/// Those in a node's slots: 0 where no light can add anything, or of what is no cluster here.
+#[derive(Clone, Copy)]
+struct Shares<const N: usize> {
+    node: u32,
+    shares: [f32; N],
+}
 
-    #[inline]
-    fn push(&mut self, element: Element, weight: f32, ratio: f32) {
-        self.elements.push(element);
-        self.weights.push((weight, ratio));
-    }
-
-    /// Makes probabilities of the weights.
-    fn settle(&mut self, floor: f64) {
-        let (open, seen) = self.weights.iter().fold((0.0, 0.0), |(open, seen), &(weight, ratio)| {
-            (open + f64::from(weight), seen + f64::from(weight) * f64::from(ratio))
-        });
-        let (by_open, by_seen) = (floor / open, (1.0 - floor) / seen);
-        for &(weight, ratio) in &self.weights {
-            let share = f64::from(weight) * (by_open + by_seen * f64::from(ratio));
-            // As in a node, none is lost to rounding beside one 10^12 times as strong.
-            self.sums.push(share.max(LEAST_SHARE) as f32);
-        }
-    }
-
-    /// The element that `u` chooses, its probability and what is left of `u`; `None` if nothing can add anything.
+impl<const N: usize> Weighed<N> {
+    /// The element that `u` in `[0, 1)` chooses, its probability and what is left of `u`; `None` if nothing can add anything.
     #[inline]
     pub(super) fn pick(&self, u: f64) -> Option<(Element, f64, f64)> {
-        self.sums.pick_stretched(u).map(|(index, share, left)| (self.elements[index], share, left))
+        let total = *self.ends.last()?;
+        if total <= 0.0 {
+            return None;
+        }
+        // Just below the total where rounding would reach it.
+        let target = (u * total).min(total.next_down());
+        let row = self.ends.partition_point(|&end| end <= target);
+        let Shares { node, shares } = &self.rows[row];
+        let mut start = if row == 0 { 0.0 } else { self.ends[row - 1] };
+        for (slot, share) in shares.iter().map(|&share| f64::from(share)).enumerate() {
+            let end = start + share;
+            if end > target {
+                let left = ((target - start) / share).clamp(0.0, ALMOST_ONE);
+                return Some((element::<N>(*node, slot), share / total, left));
+            }
+            start = end;
+        }
+        unreachable!("a row ends above the target")
     }
 
     /// All elements with their probabilities.
     pub(super) fn elements(&self) -> impl Iterator<Item = (Element, f64)> {
-        self.elements.iter().enumerate().map(|(index, element)| (*element, self.sums.pmf(index)))
+        let total = self.ends.last().copied().unwrap_or(0.0);
+        self.rows.iter().flat_map(move |Shares { node, shares }| {
+            let positive = (0..N).filter(|&slot| shares[slot] > 0.0);
+            positive.map(move |slot| (element::<N>(*node, slot), f64::from(shares[slot]) / total))
+        })
     }
+}
+
+fn element<const N: usize>(node: u32, slot: usize) -> Element {
+    if node == DIRECTIONAL { Element::DIRECTIONAL } else { Divided::<N>::element(node, slot) }
 }
