@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     /// The strategies, with parameters if any, instead of the study's own
     #[arg(long, short, value_name = "A,B")]
     strategies: Option<String>,
-    /// Scene files instead of the study's own; may be given more than once (`strategies`, `scaling`)
+    /// Scene files instead of the study's own; may be given more than once (`strategies`, `scaling`, the sweep of `visible`)
     #[arg(long = "scene", value_name = "FILE")]
     scenes: Vec<PathBuf>,
     /// Seed of the cities, instead of the recipes'
@@ -47,7 +47,7 @@ pub(super) struct Arguments {
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
-    /// Most lights of a series of growing scenes (`cutoff`, `scaling`)
+    /// Most lights of a series of growing scenes (`cutoff`, `scaling`, `visible`)
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     max_lights: u64,
     /// The result folder; a new one under results/ by default. With `all`, each study gets a folder in it

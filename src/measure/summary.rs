@@ -9,7 +9,7 @@ use crate::strategy::{Claim as StrategyClaim, Role};
 use glam::{DVec3, Vec3};
 
 /// Confidence of every interval.
-const CONFIDENCE: f64 = 0.95;
+pub const CONFIDENCE: f64 = 0.95;
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub fn blank(strategy: &Configured) -> Summary {

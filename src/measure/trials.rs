@@ -110,35 +110,53 @@ impl Trials<'_> {
         units: &[(usize, u32, u32)],
         watch: &dyn Observer,
     ) -> Result<Vec<Done>> {
-        watch.begin("runs", units.len() as u64);
-        let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-        let work = || -> Result<()> {
-            while let Some(&(strategy, run, passes)) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
-                watch.check()?;
-                let key = RunKey { seed: self.seed, run };
-                let once = Once { target: self.target, truth: self.truth, strategy: strategies[strategy], key };
-                let mut rows = Vec::new();
-                let image = once.through(&[passes], |row| {
-                    rows.push(row);
-                    Ok(())
-                })?;
-                let found = rows.pop().zip(image).map(|(row, image)| Done { strategy, row, image });
-                done.lock().map_err(|_| Error::Interrupted)?.extend(found);
-                watch.advance(1);
-            }
-            Ok(())
+        let run = |unit: usize| {
+            let (strategy, run, passes) = units[unit];
+            let key = RunKey { seed: self.seed, run };
+            let once = Once { target: self.target, truth: self.truth, strategy: strategies[strategy], key };
+            let mut rows = Vec::new();
+            let image = once.through(&[passes], |row| {
+                rows.push(row);
+                Ok(())
+            })?;
+            Ok(rows.pop().zip(image).map(|(row, image)| Done { strategy, row, image }))
         };
-        let pools = (0..self.threads.clamp(1, units.len().max(1))).map(|_| alone()).collect::<Result<Vec<_>>>()?;
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(work))).collect();
-            let join = |worker: std::thread::ScopedJoinHandle<'_, Result<()>>| {
-                worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-            };
-            workers.into_iter().try_for_each(join)
-        })?;
-        watch.end();
-        done.into_inner().map_err(|_| Error::Interrupted)
+        Ok(side_by_side(units.len(), self.threads, watch, run)?.into_iter().flatten().collect())
     }
+}
+
+/// Does `units` pieces of work on up to `threads` threads, each piece alone on one with its clock to itself; gives what they
+/// gave, in any order.
+pub fn side_by_side<T: Send>(
+    units: usize,
+    threads: usize,
+    watch: &dyn Observer,
+    work: impl Fn(usize) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    watch.begin("runs", units as u64);
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let turn = || -> Result<()> {
+        loop {
+            let unit = next.fetch_add(1, Ordering::Relaxed);
+            if unit >= units {
+                return Ok(());
+            }
+            watch.check()?;
+            let found = work(unit)?;
+            done.lock().map_err(|_| Error::Interrupted)?.push(found);
+            watch.advance(1);
+        }
+    };
+    let pools = (0..threads.clamp(1, units.max(1))).map(|_| alone()).collect::<Result<Vec<_>>>()?;
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = pools.iter().map(|pool| scope.spawn(|| pool.install(turn))).collect();
+        let join = |worker: std::thread::ScopedJoinHandle<'_, Result<()>>| {
+            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        };
+        workers.into_iter().try_for_each(join)
+    })?;
+    watch.end();
+    done.into_inner().map_err(|_| Error::Interrupted)
 }
 
 /// Passes whose state is timed: the middle of them counts.

@@ -16,6 +16,7 @@ mod soft_shadows;
 mod strategies;
 mod table;
 mod timing;
+mod visible;
 
 use crate::base::error::{Error, Result};
 use crate::base::names;
@@ -33,7 +34,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// Every study, in the order of `citylights list studies`.
-pub const STUDIES: [Entry; 5] = [strategies::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
+pub const STUDIES: [Entry; 6] =
+    [strategies::ENTRY, visible::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
 
 /// A study that can be named.
 #[derive(Clone, Copy)]
