@@ -52,7 +52,7 @@ const STEPS: [(&str, &str); 7] = [
     ("visibility, no far stop", "visible"),
 ];
 /// What the others are measured by: all that choice can do, without what is in between and with it.
-const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity:points=r2"), ("floor: oracle", ORACLE)];
+const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity"), ("floor: oracle", ORACLE)];
 const ORACLE: &str = "oracle";
 /// Most lights that the oracle is tried among.
 const MOST_OF_ORACLE: usize = 110_000;
