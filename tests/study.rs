@@ -326,6 +326,23 @@ fn growth_is_recorded_with_its_exponents() {
     assert_eq!(cells(&study, "exponents", "influence", "exponent").len(), 3, "an error that does not fall has none");
 }
 
+#[test]
+fn each_step_to_what_places_see_stands_beside_the_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let few = Options { pixels: 8, passes: 1, repeats: 2, ..options(folder.path(), "visible,light-tree") };
+    let missing = Options { scenes: vec!["scenes/no-such.toml".into()], ..few.clone() };
+    let error = study::find("visible").expect("known").run(&missing, String::new(), &|| unreachable!(), &Unobserved);
+    assert!(error.expect_err("no such scene").to_string().contains("no-such"));
+    let study = ran("visible", &few, folder.path());
+    let classic = "light-tree:arity=2,importance=classic,open=0,points=random";
+    for table in ["canyon-1000", "plaza"] {
+        assert_eq!(figure(&study, table, classic, "to_classic"), 1.0);
+        assert_eq!(figure(&study, table, "light-tree", "to_tree"), 1.0);
+        assert_eq!(*cells(&study, table, "oracle", "cpu_s")[0], Cell::Missing);
+    }
+    assert_eq!(cells(&study, "sweep", "light-tree", "to_first").len(), 2, "two scenes");
+}
+
 /// The figure of a policy in a table of the study of offsets.
 fn offset_figure(study: &Study, table: &str, distance: Option<u64>, policy: &str, column: &str) -> Option<f64> {
     let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");

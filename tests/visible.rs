@@ -109,15 +109,16 @@ fn hidden_picks(name: &str, stage: &Stage) -> f64 {
 }
 
 #[test]
-fn lights_that_nobody_sees_get_the_floor_and_little_more() {
+fn lights_that_nobody_sees_get_the_floor_and_what_is_left_of_a_prior() {
     let stage = stage_with(courtyard(), LeaveOut::No, Offset::SCALED);
     let by_weight = hidden_picks(TREE, &stage);
-    for floor in [0.1, 0.25, 0.5] {
-        let found = hidden_picks(&format!("visible:cell=3,floor={floor},probes=16"), &stage) / by_weight;
+    let found = [0.001, 0.25, 0.5, 1.0].map(|floor| {
+        let found = hidden_picks(&format!("visible:cell=3,floor={floor},probes=256"), &stage) / by_weight;
         println!("floor {floor}: {found} of the picks that weights alone give them");
-        // A prior of one blocked probe in 17 leaves a little above the floor.
-        assert!(found > 0.7 * floor && found < 1.3 * floor + 0.15, "{found} of {floor}");
-    }
+        assert!(found > 0.8 * floor, "{found} of {floor}");
+        found
+    });
+    assert!(found.is_sorted() && found[0] < 0.5 && (found[3] - 1.0).abs() < 0.1, "{found:?}");
 }
 
 #[test]
@@ -252,6 +253,10 @@ fn memory_is_bounded_and_what_is_left_out_does_not_depend_on_threads() {
     assert!(bytes <= 1_000_000 && bytes > 300_000 && more > 1_500_000, "{bytes} and {more}");
     assert_ne!(some, all);
     assert_eq!(some, film("visible:cell=0.5,least=1,cut=96,memory=1,probes=1", 2).0);
+    // Receivers of a cell that did not fit may be in a larger one, which then counts them.
+    let (some, bytes) = film("visible:cell=0.1,least=2,cut=512,memory=1,probes=1", 1);
+    assert!(bytes <= 1_000_000, "{bytes} bytes");
+    assert_eq!(some, film("visible:cell=0.1,least=2,cut=512,memory=1,probes=1", 2).0);
 }
 
 #[test]

@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// The study, or `all`: see `citylights list studies`
     #[arg(value_name = "NAME|all")]
     name: String,
-    /// The strategies, with parameters if any, instead of the study's own
+    /// The strategies, with parameters if any, instead of the study's own (of `visible`, those of its sweep)
     #[arg(long, short, value_name = "A,B")]
     strategies: Option<String>,
     /// Scene files instead of the study's own; may be given more than once (`strategies`, `scaling`, the sweep of `visible`)

@@ -126,7 +126,7 @@ impl Trials<'_> {
 }
 
 /// Does `units` pieces of work on up to `threads` threads, each piece alone on one with its clock to itself; gives what they
-/// gave, in any order.
+/// gave, in order.
 pub fn side_by_side<T: Send>(
     units: usize,
     threads: usize,
@@ -143,7 +143,7 @@ pub fn side_by_side<T: Send>(
             }
             watch.check()?;
             let found = work(unit)?;
-            done.lock().map_err(|_| Error::Interrupted)?.push(found);
+            done.lock().map_err(|_| Error::Interrupted)?.push((unit, found));
             watch.advance(1);
         }
     };
@@ -156,7 +156,9 @@ pub fn side_by_side<T: Send>(
         workers.into_iter().try_for_each(join)
     })?;
     watch.end();
-    done.into_inner().map_err(|_| Error::Interrupted)
+    let mut done = done.into_inner().map_err(|_| Error::Interrupted)?;
+    done.sort_by_key(|(unit, _)| *unit);
+    Ok(done.into_iter().map(|(_, found)| found).collect())
 }
 
 /// Passes whose state is timed: the middle of them counts.

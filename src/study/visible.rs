@@ -23,8 +23,8 @@ use crate::record::study_store::StudyWriter;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::file::{self, Overrides};
-use crate::strategy::BuildContext;
 use crate::strategy::registry::{self, Configured};
+use crate::strategy::{BuildContext, Role};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -52,8 +52,7 @@ const STEPS: [(&str, &str); 7] = [
     ("visibility, no far stop", "visible"),
 ];
 /// What the others are measured by: all that choice can do, without what is in between and with it.
-const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity"), ("floor: oracle", ORACLE)];
-const ORACLE: &str = "oracle";
+const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity"), ("floor: oracle", "oracle")];
 /// Most lights that the oracle is tried among.
 const MOST_OF_ORACLE: usize = 110_000;
 
@@ -93,12 +92,17 @@ fn run(session: &Session<'_>) -> Result<Study> {
         sizes.into_iter().map(|lights| (format!("canyon-{lights}"), CANYON, Some(lights))).collect();
     frames.push(("plaza".into(), PLAZA, None));
     let mut tables: Vec<TableRecord> = frames.iter().map(|(name, ..)| ablation(session, name)).collect();
-    tables.push(swept(session));
+    tables.push(sweep_table(session));
+    let swept = session.scenes(&SWEPT);
+    // Read once before anything is measured: a misspelt name must not cost an hour.
+    for path in &swept {
+        file::open(path, &options.overrides)?;
+    }
     let mut writer = session.open(tables)?;
     for (table, path, lights) in &frames {
         let frame = Frame::open(session, Path::new(path), *lights)?;
         let few = frame.stage.scene().lights().len() <= MOST_OF_ORACLE;
-        let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.name() != ORACLE).collect();
+        let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
         let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
         let mut passes = vec![1, 8, options.passes];
         passes.retain(|&n| n <= options.passes);
@@ -109,7 +113,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
                 |name: &str| steps.iter().zip(&found).find(|((_, of), _)| of.name() == name).map(|f| f.1.product());
             let (classic, tree) = (product(steps[0].1.name()), product("light-tree"));
             for ((step, strategy), found) in steps.iter().zip(&found) {
-                let timed = strategy.name() != ORACLE;
+                let timed = strategy.info().role != Role::Oracle;
                 let mut cells: Vec<Cell> = vec![(*step).into(), strategy.name().into(), u64::from(passes).into()];
                 cells.extend(found.cells(timed));
                 let ratio = |to: Option<f64>| to.filter(|_| timed).map(|to| found.product() / to);
@@ -119,12 +123,12 @@ fn run(session: &Session<'_>) -> Result<Study> {
         }
         frame.note(&mut writer);
     }
-    for path in session.scenes(&SWEPT) {
-        let frame = Frame::open(session, &path, None)?;
+    for path in &swept {
+        let frame = Frame::open(session, path, None)?;
         let found = frame.all(session, &sweep.iter().collect::<Vec<_>>(), options.passes)?;
         for (strategy, one) in sweep.iter().zip(&found) {
             let mut cells: Vec<Cell> = vec![frame.stage.scene().name().into(), strategy.name().into()];
-            cells.extend(one.cells(true));
+            cells.extend(one.cells(strategy.info().role != Role::Oracle));
             cells.push((one.product() / found[0].product()).into());
             writer.row("sweep", cells)?;
         }
@@ -161,7 +165,7 @@ fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
     }
 }
 
-fn swept(session: &Session<'_>) -> TableRecord {
+fn sweep_table(session: &Session<'_>) -> TableRecord {
     let mut columns = vec![column("scene", "scene", Format::Words), column("strategy", "strategy", Format::Name)];
     columns.extend(figures());
     columns.push(column("to_first", "to\nfirst", Format::Number));
@@ -281,7 +285,7 @@ impl Frame {
         let sampler = sampler?;
         let few: Vec<_> = self.places.iter().map(|&i| stage.receivers()[i]).collect();
         // Those that look at every light share nothing between receivers.
-        let alone = FLOORS.iter().any(|(_, name)| *name == strategy.name());
+        let alone = FLOORS.iter().any(|(_, name)| *name == strategy.info().name);
         let receivers = if alone { &few[..] } else { stage.receivers() };
         let mut film = Film::new(receivers.len());
         let ((), spent) = timed(|| Plan { stage, receivers, sampler: &*sampler, key }.run(passes, &mut film));

@@ -251,6 +251,11 @@ impl<const N: usize> Tree<N> {
         self.directional.iter().enumerate().map(move |(i, light)| (light.light, weight(i))).filter(|(_, w)| *w > 0.0)
     }
 
+    /// What they add together, in lx.
+    pub(in crate::strategy) fn all_directional(&self, memory: &Memory<N>) -> f32 {
+        (memory.directional.total() as f32).min(f32::MAX)
+    }
+
     /// A directional light by what it adds, and its probability among them.
     #[inline]
     pub(super) fn pick_directional(&self, u: f64, memory: &Memory<N>) -> Option<(LightId, f64)> {

@@ -149,16 +149,27 @@ impl Cells {
         cells.sort_by_key(|cell| Reverse(cell.count));
         cells.truncate(memory / each);
         cells.shrink_to_fit();
+        let places = cells.iter().zip(0..).map(|(cell, place)| (cell.name, place)).collect();
+        let mut found = Self { scales, places, cells, tried: Vec::new() };
+        found.count(receivers);
+        found.spread(receivers);
+        found
+    }
+
+    /// Counts the receivers anew: those of a cell that did not fit may have found a coarser one.
+    fn count(&mut self, receivers: &[Receiver]) {
+        self.cells.iter_mut().for_each(|cell| *cell = Cell::new(cell.name));
+        for at in receivers {
+            if let Some(place) = self.find(at) {
+                self.cells[place as usize].add(at);
+            }
+        }
         let mut first = 0;
-        for cell in &mut cells {
+        for cell in &mut self.cells {
             cell.first = first;
             first += cell.tried();
         }
-        let places = cells.iter().zip(0..).map(|(cell, place)| (cell.name, place)).collect();
-        let tried = vec![Spot { position: Vec3::ZERO, normal: Vec3::Z }; first as usize];
-        let mut found = Self { scales, places, cells, tried };
-        found.spread(receivers);
-        found
+        self.tried = vec![Spot { position: Vec3::ZERO, normal: Vec3::Z }; first as usize];
     }
 
     /// Chooses the receivers to try.

@@ -27,6 +27,10 @@ const PRIOR: f64 = 1.0;
 /// How many probes a cluster's weight counts for, as what there is of it.
 const WEIGHT: f64 = 0.25;
 
+/// Most that a cluster's weight is multiplied with: a probe next to its horizon, where it weighs next to nothing, says little of
+/// where it weighs more.
+const MOST: f64 = 100.0;
+
 /// How tables are learned.
 #[derive(Clone, Copy)]
 pub(super) struct Lesson {
@@ -87,7 +91,7 @@ impl Lesson {
             }
             if tree.has_directional() {
                 tree.arrive(at, memory, tally);
-                weights.push(tree.directional(memory).map(|(_, weight)| weight).sum());
+                weights.push(tree.all_directional(memory));
             }
         }
         let count = clusters.len();
@@ -121,7 +125,7 @@ impl Lesson {
         let sums = clusters.iter().fold([0.0; 2], |[seen, all], c| [seen + c.share * c.seen(), all + c.share]);
         let mean = if sums[0] > 0.0 { sums[0] / sums[1] } else { 1.0 };
         let floor = self.floor;
-        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor) as f32)
+        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor).min(MOST) as f32)
     }
 }
 
@@ -234,9 +238,10 @@ impl<const N: usize> Table<N> {
         let mut sums = [0.0; N];
         for Row { node, factors } in &self.rows {
             let weights = match *node {
-                DIRECTIONAL => [tree.directional(memory).map(|(_, weight)| weight).sum(); N],
+                DIRECTIONAL => std::array::from_fn(|slot| if slot == 0 { tree.all_directional(memory) } else { 0.0 }),
                 node => tree.weights(node, at, tally),
             };
+            // Neither factor is infinite: what is no cluster here stays 0.
             let shares = std::array::from_fn(|slot| (weights[slot] * factors[slot]).min(f32::MAX));
             sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += f64::from(share));
             rows.push(Shares { node: *node, shares });
