@@ -159,11 +159,7 @@ impl<const N: usize> Tree<N> {
         memory: &mut Memory<N>,
         tally: &mut T,
     ) -> Option<(LightId, f64)> {
-        match self.slot(part) {
-            Slot::Light(light) => Some((light, 1.0)),
-            Slot::Node(offset) => self.pick_below((part.node + offset) as usize, at, u, draws, memory, tally),
-            Slot::Empty => None,
-        }
+        self.pick_slot(part.node as usize, part.slot as usize, at, u, draws, memory, tally)
     }
 
     /// The part that holds the light in that place of the tree's order, by its index, and the light's probability there;
@@ -189,11 +185,7 @@ impl<const N: usize> Tree<N> {
 
     /// Adds `scale` times the probabilities of [`pick_part`](Self::pick_part) to `counts`.
     pub(in crate::strategy) fn expect_part(&self, part: Part, at: &Receiver, scale: f64, counts: &mut [f32]) {
-        match self.slot(part) {
-            Slot::Light(light) => counts[light as usize] += scale as f32,
-            Slot::Node(offset) => self.expect_below((part.node + offset) as usize, at, scale, counts),
-            Slot::Empty => {}
-        }
+        self.expect_slot(part.node as usize, part.slot as usize, at, scale, counts);
     }
 }
 

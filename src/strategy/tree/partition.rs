@@ -172,11 +172,7 @@ impl<const N: usize> Tree<N> {
             return self.pick_directional(u, memory);
         }
         let (node, slot) = (element.0 as usize / N, element.0 as usize % N);
-        match self.nodes[node].slot(slot) {
-            Slot::Light(light) => Some((light, 1.0)),
-            Slot::Node(offset) => self.pick_below(node + offset as usize, at, u, draws, memory, tally),
-            Slot::Empty => None,
-        }
+        self.pick_slot(node, slot, at, u, draws, memory, tally)
     }
 
     /// Adds `scale` times the probabilities of [`pick_in`](Self::pick_in) to `counts`.
@@ -192,10 +188,6 @@ impl<const N: usize> Tree<N> {
             return self.expect_directional(scale, memory, counts);
         }
         let (node, slot) = (element.0 as usize / N, element.0 as usize % N);
-        match self.nodes[node].slot(slot) {
-            Slot::Light(light) => counts[light as usize] += scale as f32,
-            Slot::Node(offset) => self.expect_below(node + offset as usize, at, scale, counts),
-            Slot::Empty => {}
-        }
+        self.expect_slot(node, slot, at, scale, counts);
     }
 }

@@ -121,6 +121,35 @@ impl<const N: usize> Tree<N> {
         Some((light, (1.0 - share) * pmf))
     }
 
+    /// As [`pick`](Self::pick), among the lights of a slot.
+    #[inline]
+    #[expect(clippy::too_many_arguments, reason = "a slot, a receiver and what a walk needs")]
+    pub(super) fn pick_slot<T: Tally>(
+        &self,
+        node: usize,
+        slot: usize,
+        at: &Receiver,
+        u: f64,
+        draws: &mut Draws,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) -> Option<(LightId, f64)> {
+        match self.nodes[node].slot(slot) {
+            Slot::Light(light) => Some((light, 1.0)),
+            Slot::Node(offset) => self.pick_below(node + offset as usize, at, u, draws, memory, tally),
+            Slot::Empty => None,
+        }
+    }
+
+    /// As [`expect`](Self::expect), of [`pick_slot`](Self::pick_slot).
+    pub(super) fn expect_slot(&self, node: usize, slot: usize, at: &Receiver, scale: f64, counts: &mut [f32]) {
+        match self.nodes[node].slot(slot) {
+            Slot::Light(light) => add(counts, light, scale),
+            Slot::Node(offset) => self.expect_below(node + offset as usize, at, scale, counts),
+            Slot::Empty => {}
+        }
+    }
+
     /// As [`pick`](Self::pick), among the lights of a node.
     #[inline]
     pub(super) fn pick_below<T: Tally>(
