@@ -12,7 +12,7 @@ use crate::scene::small;
 use crate::shading::contribution::contribution;
 use crate::strategy::tally::Uncounted;
 use crate::strategy::tree::Tree;
-use crate::strategy::tree::importance::{Distance, How, Weighing};
+use crate::strategy::tree::importance::{Distance, Facing, How, Weighing};
 use crate::strategy::tree::walk::Memory;
 use glam::{DVec3, Vec3};
 
@@ -24,11 +24,11 @@ const LIGHTS: usize = 2000;
 const RECEIVERS: usize = 120;
 /// All ways to weigh and walk.
 const WAYS: [How; 4] = [
-    How { weighing: Weighing::Box, distance: Distance::Mean, far: 0.0 },
-    How { weighing: Weighing::Box, distance: Distance::MinMax, far: 0.0 },
-    How { weighing: Weighing::Box, distance: Distance::Mean, far: 0.05 },
+    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Rms, far: 0.0 },
+    How { weighing: Weighing::Box, distance: Distance::MinMax, facing: Facing::Mean, far: 0.0 },
+    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Mean, far: 0.05 },
     // Takes the absolute cosine at the receiver: it knows no horizon.
-    How { weighing: Weighing::Classic, distance: Distance::Mean, far: 0.0 },
+    How { weighing: Weighing::Classic, distance: Distance::Mean, facing: Facing::Mean, far: 0.0 },
 ];
 /// Those that know the horizon.
 const HORIZONS: usize = 3;

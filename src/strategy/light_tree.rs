@@ -14,7 +14,7 @@ use super::parameters::Arguments;
 use super::tally::{Tally, Uncounted};
 use super::tree::Tree;
 use super::tree::cut::{Cluster, Cut, Part};
-use super::tree::importance::{Distance, How, Weighing};
+use super::tree::importance::{Distance, Facing, How, Weighing};
 use super::tree::walk::{LEAST_SHARE, Memory, USED_UP};
 use super::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
 use crate::base::discrete::{AliasTable, Cumulative};
@@ -62,6 +62,8 @@ impl Strategy for LightTree {
         let arity = arguments.choice("arity", 2, &["2", "4", "8"], "slots of a node")?;
         let weighing = arguments.choice("importance", 0, &["box", "classic"], "how a cluster is weighed")?;
         let distance = arguments.choice("distance", 0, &["mean", "minmax"], "at which distance of its box")?;
+        let facing = "emission taken where lights may face any way: mean, or root mean square";
+        let facing = arguments.choice("facing", 0, &["mean", "rms"], facing)?;
         let far = "squared size over squared distance below which a light is chosen by strength at once; 0 for never";
         let far = arguments.real("far", 0.0, 0.0..=1.0, far)?;
         let split = "clusters less uniform than this get picks of their own parts; 0 for never";
@@ -77,6 +79,7 @@ impl Strategy for LightTree {
         let how = How {
             weighing: [Weighing::Box, Weighing::Classic][weighing],
             distance: [Distance::Mean, Distance::MinMax][distance],
+            facing: [Facing::Mean, Facing::Rms][facing],
             far,
         };
         Ok(Self { arity: [2, 4, 8][arity], how, walks: Walks { picks, split, cut, open, mix } })
@@ -92,9 +95,9 @@ impl Strategy for LightTree {
 }
 
 impl LightTree {
-    /// The strategy as it comes, but for the number of picks and `far`.
-    pub(super) fn plain(picks: u32, far: f32) -> Result<Self> {
-        Self::configure(&mut Arguments::new(Self::INFO.name, &format!("picks={picks},far={far}"))?)
+    /// The strategy with these parameters, otherwise as it comes.
+    pub(super) fn with(parameters: &str) -> Result<Self> {
+        Self::configure(&mut Arguments::new(Self::INFO.name, parameters)?)
     }
 
     /// A sampler of a tree `N` wide, whatever `arity` says.

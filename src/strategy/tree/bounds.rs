@@ -46,14 +46,14 @@ impl Item {
         Some(Self { low, high, axis, cut, full, peak: peak(of), light })
     }
 
-    /// Emission averaged over all directions, as a share of the peak.
-    pub(super) fn mean_emission(&self) -> f32 {
+    /// The `power`-th power of the emission averaged over all directions, as a share of that of the peak.
+    pub(super) fn moment(&self, power: u8) -> f32 {
         if self.cut < 0.0 {
             return 1.0;
         }
         // Linear between `cut` and `full` for a triangle, squared for a spot.
-        let ramp = if self.cut == 0.0 && self.full == 1.0 { 2.0 } else { 3.0 };
-        0.5 * ((1.0 - self.full) + (self.full - self.cut) / ramp)
+        let degree = if self.cut == 0.0 && self.full == 1.0 { 1 } else { 2 };
+        0.5 * ((1.0 - self.full) + (self.full - self.cut) / f32::from(degree * power + 1))
     }
 
     pub(super) fn centre(&self) -> Vec3A {

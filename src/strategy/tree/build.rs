@@ -4,6 +4,7 @@
 //! node. That is the binary tree of the heuristic with the levels that matter most merged, without ever holding it.
 
 use super::bounds::{Bounds, Item};
+use super::importance::Facing;
 use super::node::Node;
 use super::split::{TIE, split};
 use std::ops::Range;
@@ -22,29 +23,29 @@ struct Part {
 }
 
 /// The nodes over `items`, which are reordered so that those of each node are together; none without items.
-pub(super) fn nodes<const N: usize>(items: &mut [Item]) -> Vec<Node<N>> {
+pub(super) fn nodes<const N: usize>(items: &mut [Item], facing: Facing) -> Vec<Node<N>> {
     if items.is_empty() {
         return Vec::new();
     }
     let mut nodes = Vec::with_capacity(items.len() / (N - 1) + 1);
-    grow(&mut nodes, items, 0, 0);
+    grow(&mut nodes, items, facing, 0, 0);
     nodes
 }
 
 /// Appends the node over `items`, which start at place `first` of all, and the nodes below it.
-fn grow<const N: usize>(nodes: &mut Vec<Node<N>>, items: &mut [Item], first: u32, depth: u32) {
+fn grow<const N: usize>(nodes: &mut Vec<Node<N>>, items: &mut [Item], facing: Facing, first: u32, depth: u32) {
     let parts = parts::<N>(items, depth);
     let at = nodes.len();
     nodes.push(Node::new(first, items));
     for (j, part) in parts.iter().enumerate() {
-        nodes[at].bound(j, &part.bounds, &items[part.range.clone()]);
+        nodes[at].bound(j, &part.bounds, &items[part.range.clone()], facing);
     }
     let large = |part: &&Part| part.range.len() > 1;
     if items.len() < ALONE {
         for (j, part) in parts.iter().enumerate().filter(|(_, part)| large(part)) {
             let offset = nodes.len() - at;
             nodes[at].descend(j, offset);
-            grow(nodes, &mut items[part.range.clone()], first + part.range.start as u32, depth + 1);
+            grow(nodes, &mut items[part.range.clone()], facing, first + part.range.start as u32, depth + 1);
         }
         return;
     }
@@ -63,7 +64,7 @@ fn grow<const N: usize>(nodes: &mut Vec<Node<N>>, items: &mut [Item], first: u32
     rayon::scope(|scope| {
         for (j, own, nodes) in &mut below {
             let start = first + parts[*j].range.start as u32;
-            scope.spawn(move |_| grow(nodes, own, start, depth + 1));
+            scope.spawn(move |_| grow(nodes, own, facing, start, depth + 1));
         }
     });
     for (j, _, below) in below {

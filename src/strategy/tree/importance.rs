@@ -31,6 +31,17 @@ pub enum Distance {
     MinMax,
 }
 
+/// Which emission a cluster is taken to have where its box does not say which way its lights face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Facing {
+    /// The mean over all directions: what many lights make together.
+    #[default]
+    Mean,
+    /// The root mean square: the weight of least variance for a light of which nothing else is known. A headlight is 7 times
+    /// as bright by that, and one that does face the receiver is expected as many times more often.
+    Rms,
+}
+
 /// How a tree weighs and walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct How {
@@ -38,6 +49,8 @@ pub struct How {
     pub weighing: Weighing,
     /// At which distance.
     pub distance: Distance,
+    /// With which emission where any is possible.
+    pub facing: Facing,
     /// A cluster whose squared half diagonal is less than this share of its squared distance, all above the receiver's
     /// horizon and all alike in direction, is not walked into: a light is chosen by peak intensity at once. 0 for
     /// never.
@@ -59,6 +72,11 @@ const HALF_SPACE: f32 = 1.0 / (2.0 * std::f32::consts::PI);
 /// Least squared distance of the classic weight, as a share of the squared half diagonal: half the radius, as in its
 /// source but in its unit.
 const HALF_RADIUS2: f32 = 0.25;
+
+/// How evenly a cluster's lights are thought to fill its box: a small share `s` of it above a horizon counts `1 + 1 / EVEN` times,
+/// since what a few lights there add is seldom and much. On `downtown` and `metropolis` a light tree errs a fifth less than with
+/// the share itself.
+const EVEN: f32 = 0.5;
 
 /// The estimates of a node's slots, 0 where no light of a slot can add anything.
 pub(super) struct Weights<const N: usize> {
@@ -108,11 +126,12 @@ fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Of an interval from `bottom` to `top` > 0: the share above 0 and the mean over that.
+/// Of an interval from `bottom` to `top` > 0: the share above 0, more where that is small, and the mean over that.
 #[inline(always)]
 fn above(bottom: f32, top: f32) -> (f32, f32) {
     let from = larger(bottom, 0.0);
-    ((top - from) / (top - bottom), 0.5 * (top + from))
+    let length = top - from;
+    ((1.0 + EVEN) * length / (length + EVEN * (top - bottom)), 0.5 * (top + from))
 }
 
 #[inline(always)]
@@ -156,12 +175,12 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
         let floored2 = larger(near2, NEAREST * r2);
         // The mean of 1/d^2 for distances evenly between the least and the greatest.
         let typical2 = (floored2 * far2).sqrt();
-        let typical = (near2 * far2).sqrt().sqrt();
-        let cosine = smaller(1.0, mean / typical);
-        let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean / typical);
-        // Where the box does not say which way its lights face, they are taken to face any way.
-        let unknown = smaller(1.0, half_facing / typical);
-        let emission = emission + unknown * (node.mean[j] - emission);
+        let per_metre = 1.0 / typical2.sqrt();
+        let cosine = smaller(1.0, mean * per_metre);
+        let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean * per_metre);
+        // Where the box does not say which way its lights face, they may face any way.
+        let unknown = smaller(1.0, half_facing * per_metre);
+        let emission = emission + unknown * (node.any_way[j] - emission);
         let arriving = node.peak[j] * emission * share * cosine;
         // Area of the box seen along the normal.
         let section = 4.0 * (mx * hy * hz + my * hz * hx + mz * hx * hy);

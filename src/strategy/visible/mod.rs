@@ -14,7 +14,8 @@
 //! | question | where |
 //! |---|---|
 //! | which receivers share a table? | `cells` |
-//! | how often is each cluster chosen there? | `table` |
+//! | what is seen of each cluster there? | `table` |
+//! | which cluster is chosen at this receiver? | `weighed` |
 //!
 //! A table depends on the scene, the seed and the receivers of its cell, all known when the sampler is built, and on
 //! nothing that is sampled. It is made when a receiver of its cell is first arrived at, on that receiver's thread; a second
@@ -29,6 +30,7 @@
 
 mod cells;
 mod table;
+mod weighed;
 
 use super::light_tree::{self, LightTree};
 use super::parameters::Arguments;
@@ -41,7 +43,8 @@ use crate::base::error::Result;
 use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
 use cells::Cells;
-use table::{Lesson, School, Table, Weighed};
+use table::{Lesson, School, Table};
+use weighed::Weighed;
 
 /// Slots of a node of the tree: those of `light-tree` as it comes. Nodes of four make the same choice on first-night and take a
 /// fifth more error x CPU s on downtown.
@@ -102,9 +105,12 @@ impl Strategy for Visible {
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
         let stage = context.stage;
-        let tree = LightTree::plain(self.picks, self.far)?.sampler::<WIDTH>(context)?;
         // With one light there is no choice, and with nothing in between nothing to learn.
-        let cells = if stage.needs().occlusion && stage.lights().len() > 1 {
+        let learns = stage.needs().occlusion && stage.lights().len() > 1;
+        let facing = if learns { "rms" } else { "mean" };
+        let tree = LightTree::with(&format!("picks={},far={},facing={facing}", self.picks, self.far))?;
+        let tree = tree.sampler::<WIDTH>(context)?;
+        let cells = if learns {
             let table = Table::<WIDTH>::bytes(tree.tree().most_divided(self.lesson.cut));
             Cells::new(stage.receivers(), self.cell, self.least, self.memory, table)
         } else {
@@ -149,7 +155,7 @@ impl Sampler {
             self.lesson.learn(school, region, tried, hash(&[self.seed, name]), memory, tally)
         });
         tree.arrive(at, memory, tally);
-        table.weigh(tree, at, memory, weighed, tally);
+        weighed.weigh(table, tree, at, memory, tally);
         true
     }
 }

@@ -1,12 +1,16 @@
-//! How often is each cluster chosen around here?
+//! What is seen of each cluster around here?
 //!
-//! In proportion to the root mean square of what a pick of it brings, shadow included: the probabilities of least variance. A
-//! table holds the ratio of that to the cluster's weight with nothing in between, so that a receiver of the cell chooses by its
-//! own weights times what the cell has learned: a cluster below its horizon has no chance, a near one has more.
+//! A cluster should be chosen in proportion to the root mean square of what a pick of it brings, shadow included: the probabilities
+//! of least variance. A table holds the ratio of that to the cluster's weight with nothing in between, so that a receiver of the
+//! cell chooses by its own weights times what the cell has learned: a cluster below its horizon has no chance, a near one has
+//! more.
 //!
 //! Ratios are learned by a few probes: a receiver of the cell, a walk inside the cluster, a point on the light, a shadow ray.
 //! Few probes may all be blocked, or all by luck not: a prior, that half of it is seen, counts as one more probe. And no
 //! cluster's factor is less than a share of the cell's mean, for what no probe has seen.
+//!
+//! A weight at a receiver may be far too small, where little of a cluster's box is above its horizon but a strong light is there.
+//! So some picks go by each cluster's share of all light that is seen in the cell.
 
 use crate::base::draws::{Draws, Points, Sequence};
 use crate::base::random::RunKey;
@@ -17,7 +21,7 @@ use crate::strategy::tally::Tally;
 use crate::strategy::target::Target;
 use crate::strategy::tree::Tree;
 use crate::strategy::tree::partition::{Divided, Element, Region};
-use crate::strategy::tree::walk::{ALMOST_ONE, LEAST_SHARE, Memory};
+use crate::strategy::tree::walk::Memory;
 use std::f64::consts::PI;
 
 /// How much is seen of a cluster, as a share of what there is: what is thought of it before any probe.
@@ -27,9 +31,10 @@ const PRIOR: f64 = 1.0;
 /// How many probes a cluster's weight counts for, as what there is of it.
 const WEIGHT: f64 = 0.25;
 
-/// Most that a cluster's weight is multiplied with: a probe next to its horizon, where it weighs next to nothing, says little of
-/// where it weighs more.
-const MOST: f64 = 100.0;
+/// Picks by the clusters' shares of the cell's light, over those by their weights at the receiver, where `floor` is nothing. A
+/// weight may be next to nothing where much arrives, as from a sign that stands out of its facade in a cluster of windows that do
+/// not: without these picks a few pixels of downtown have half of the error.
+const COMMON: f64 = 0.2;
 
 /// How tables are learned.
 #[derive(Clone, Copy)]
@@ -44,18 +49,20 @@ pub(super) struct Lesson {
 
 /// Clusters of all lights, each with what is seen of it over its weight.
 pub(super) struct Table<const N: usize> {
-    rows: Box<[Row<N>]>,
+    pub(super) rows: Box<[Row<N>]>,
 }
 
 /// In place of a node: the row whose first slot is all directional lights.
-const DIRECTIONAL: u32 = u32::MAX;
+pub(super) const DIRECTIONAL: u32 = u32::MAX;
 
 /// The clusters in a node's slots.
 #[derive(Clone, Copy)]
-struct Row<const N: usize> {
-    node: u32,
+pub(super) struct Row<const N: usize> {
+    pub(super) node: u32,
     /// What their weights are multiplied with; 0 of a slot that is no cluster here.
-    factors: [f32; N],
+    pub(super) factors: [f32; N],
+    /// Their shares of the light of the cell, together [`COMMON`] at most.
+    pub(super) common: [f32; N],
 }
 
 /// What tables are learned of.
@@ -82,22 +89,14 @@ impl Lesson {
         if tree.has_directional() {
             clusters.push(Cluster::new(Element::DIRECTIONAL));
         }
-        // By receiver, then by cluster.
-        let mut weights = Vec::with_capacity(tried.len() * clusters.len());
-        for at in tried {
-            for divided in &nodes {
-                let of_slots = tree.weights(divided.node(), at, tally);
-                weights.extend(of_slots.iter().zip(divided.elements).filter(|(_, is)| *is).map(|(weight, _)| *weight));
-            }
-            if tree.has_directional() {
-                tree.arrive(at, memory, tally);
-                weights.push(tree.all_directional(memory));
-            }
-        }
         let count = clusters.len();
+        // By receiver, then by cluster.
+        let mut weights = Vec::with_capacity(tried.len() * count);
+        tried.iter().for_each(|at| school.weigh(&nodes, at, &mut weights, memory, tally));
         for (e, cluster) in clusters.iter_mut().enumerate() {
             cluster.lit = weights[e..].iter().step_by(count).filter(|weight| **weight > 0.0).count();
         }
+        let mut seen = Vec::new();
         for (i, at) in tried.iter().enumerate() {
             tree.arrive(at, memory, tally);
             let mut draws = Sequence::new(RunKey { seed: name, run: 0 }, i as u32, Points::Random).pass(0);
@@ -107,6 +106,9 @@ impl Lesson {
                     let u = (f64::from(j) + draws.stream().uniform64()) / f64::from(self.probes);
                     let (value, visible) = school.probe(cluster.element, at, u, &mut draws, memory, tally);
                     cluster.add(value * PI / f64::from(*weight), visible);
+                    if visible {
+                        seen.push(Seen { cluster: e, receiver: i, value: value * PI });
+                    }
                 }
                 cluster.met += 1;
             }
@@ -117,7 +119,9 @@ impl Lesson {
                 cluster.share += f64::from(weight) / total;
             }
         }
-        Table::new(&nodes, self.factors(&clusters))
+        let factors: Vec<f32> = self.factors(&clusters).collect();
+        let common = self.common(&clusters, &factors, &weights, &seen);
+        Table::new(&nodes, factors.into_iter().zip(common))
     }
 
     /// What the clusters' weights are to be multiplied with: what is seen of each, over the mean of that, and the floor.
@@ -125,8 +129,31 @@ impl Lesson {
         let sums = clusters.iter().fold([0.0; 2], |[seen, all], c| [seen + c.share * c.seen(), all + c.share]);
         let mean = if sums[0] > 0.0 { sums[0] / sums[1] } else { 1.0 };
         let floor = self.floor;
-        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor).min(MOST) as f32)
+        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor) as f32)
     }
+
+    /// The clusters' shares of the light of the cell: root mean squares of what is seen of each at a receiver, over all that is
+    /// seen there.
+    fn common(&self, clusters: &[Cluster], factors: &[f32], weights: &[f32], seen: &[Seen]) -> Vec<f32> {
+        let total = |of: &[f32]| of.iter().zip(factors).map(|(&w, &f)| f64::from(w) * f64::from(f)).sum::<f64>();
+        let totals: Vec<f64> = weights.chunks(clusters.len().max(1)).map(total).collect();
+        let mut shares = vec![0.0; clusters.len()];
+        for &Seen { cluster, receiver, value } in seen {
+            shares[cluster] += (value / totals[receiver]).powi(2);
+        }
+        shares.iter_mut().zip(clusters).for_each(|(share, of)| *share = (*share / f64::from(of.made.max(1))).sqrt());
+        let sum: f64 = shares.iter().sum();
+        let scale = if sum > 0.0 { (1.0 - self.floor) * COMMON / sum } else { 0.0 };
+        shares.into_iter().map(|share| (scale * share) as f32).collect()
+    }
+}
+
+/// What a probe has seen.
+struct Seen {
+    cluster: usize,
+    receiver: usize,
+    /// What the point adds over its probability, in lx.
+    value: f64,
 }
 
 /// A cluster while it is learned of.
@@ -182,6 +209,25 @@ impl Cluster {
 }
 
 impl<const N: usize> School<'_, N> {
+    /// Appends the weights of all clusters at a receiver.
+    fn weigh<T: Tally>(
+        self,
+        nodes: &[Divided<N>],
+        at: &Receiver,
+        weights: &mut Vec<f32>,
+        memory: &mut Memory<N>,
+        tally: &mut T,
+    ) {
+        for divided in nodes {
+            let of_slots = self.tree.weights(divided.node(), at, tally);
+            weights.extend(of_slots.iter().zip(divided.elements).filter(|(_, is)| *is).map(|(weight, _)| *weight));
+        }
+        if self.tree.has_directional() {
+            self.tree.arrive(at, memory, tally);
+            weights.push(self.tree.all_directional(memory));
+        }
+    }
+
     /// What a point of a light of the element adds at a receiver with nothing in between, over the light's probability
     /// there, and whether it is seen.
     fn probe<T: Tally>(
@@ -208,110 +254,22 @@ impl<const N: usize> Table<N> {
     }
 
     /// The factors are those of the nodes' clusters, in order, and of the directional lights if there are any.
-    fn new(nodes: &[Divided<N>], mut factors: impl Iterator<Item = f32>) -> Self {
-        let mut next = |is: bool| if is { factors.next().unwrap_or(1.0) } else { 0.0 };
-        let row = |divided: &Divided<N>| Row { node: divided.node(), factors: divided.elements.map(&mut next) };
+    fn new(nodes: &[Divided<N>], mut learned: impl Iterator<Item = (f32, f32)>) -> Self {
+        let mut next = |is: bool| if is { learned.next().unwrap_or((1.0, 0.0)) } else { (0.0, 0.0) };
+        let row = |divided: &Divided<N>| {
+            let both = divided.elements.map(&mut next);
+            Row { node: divided.node(), factors: both.map(|of| of.0), common: both.map(|of| of.1) }
+        };
         let mut rows: Vec<Row<N>> = nodes.iter().map(row).collect();
-        rows.extend(factors.next().map(|factor| {
-            let mut factors = [0.0; N];
-            factors[0] = factor;
-            Row { node: DIRECTIONAL, factors }
+        rows.extend(learned.next().map(|both| {
+            let (mut factors, mut common) = ([0.0; N], [0.0; N]);
+            (factors[0], common[0]) = both;
+            Row { node: DIRECTIONAL, factors, common }
         }));
         Self { rows: rows.into() }
-    }
-
-    /// Weighs the clusters at the receiver that `memory` has arrived at.
-    pub(super) fn weigh<T: Tally>(
-        &self,
-        tree: &Tree<N>,
-        at: &Receiver,
-        memory: &Memory<N>,
-        weighed: &mut Weighed<N>,
-        tally: &mut T,
-    ) {
-        let Weighed { rows, ends } = weighed;
-        rows.clear();
-        rows.reserve(self.rows.len());
-        ends.clear();
-        ends.reserve(self.rows.len());
-        // Slot by slot, so that all slots of a row are added together.
-        let mut sums = [0.0; N];
-        for Row { node, factors } in &self.rows {
-            let weights = match *node {
-                DIRECTIONAL => std::array::from_fn(|slot| if slot == 0 { tree.all_directional(memory) } else { 0.0 }),
-                node => tree.weights(node, at, tally),
-            };
-            // Neither factor is infinite: what is no cluster here stays 0.
-            let shares = std::array::from_fn(|slot| (weights[slot] * factors[slot]).min(f32::MAX));
-            sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += f64::from(share));
-            rows.push(Shares { node: *node, shares });
-        }
-        // As in a node, none is lost to rounding beside one 10^12 times as strong, nor to underflow.
-        let least = ((sums.iter().sum::<f64>() * LEAST_SHARE) as f32).max(f32::MIN_POSITIVE);
-        let mut end = 0.0;
-        for Shares { shares, .. } in rows {
-            for share in shares.iter_mut() {
-                *share = if *share > 0.0 { share.max(least) } else { 0.0 };
-            }
-            end = shares.iter().fold(end, |end, &share| end + f64::from(share));
-            ends.push(end);
-        }
     }
 
     pub(super) fn heap_bytes(&self) -> usize {
         size_of_val(&self.rows[..])
     }
-}
-
-/// The chances of all clusters at a receiver.
-#[derive(Default)]
-pub(super) struct Weighed<const N: usize> {
-    rows: Vec<Shares<N>>,
-    /// Sums of the shares up to the end of each row.
-    ends: Vec<f64>,
-}
-
-/// Those in a node's slots: 0 where no light can add anything, or of what is no cluster here.
-#[derive(Clone, Copy)]
-struct Shares<const N: usize> {
-    node: u32,
-    shares: [f32; N],
-}
-
-impl<const N: usize> Weighed<N> {
-    /// The element that `u` in `[0, 1)` chooses, its probability and what is left of `u`; `None` if nothing can add anything.
-    #[inline]
-    pub(super) fn pick(&self, u: f64) -> Option<(Element, f64, f64)> {
-        let total = *self.ends.last()?;
-        if total <= 0.0 {
-            return None;
-        }
-        // Just below the total where rounding would reach it.
-        let target = (u * total).min(total.next_down());
-        let row = self.ends.partition_point(|&end| end <= target);
-        let Shares { node, shares } = &self.rows[row];
-        let mut start = if row == 0 { 0.0 } else { self.ends[row - 1] };
-        for (slot, share) in shares.iter().map(|&share| f64::from(share)).enumerate() {
-            let end = start + share;
-            if end > target {
-                let left = ((target - start) / share).clamp(0.0, ALMOST_ONE);
-                return Some((element::<N>(*node, slot), share / total, left));
-            }
-            start = end;
-        }
-        unreachable!("a row ends above the target")
-    }
-
-    /// All elements with their probabilities.
-    pub(super) fn elements(&self) -> impl Iterator<Item = (Element, f64)> {
-        let total = self.ends.last().copied().unwrap_or(0.0);
-        self.rows.iter().flat_map(move |Shares { node, shares }| {
-            let positive = (0..N).filter(|&slot| shares[slot] > 0.0);
-            positive.map(move |slot| (element::<N>(*node, slot), f64::from(shares[slot]) / total))
-        })
-    }
-}
-
-fn element<const N: usize>(node: u32, slot: usize) -> Element {
-    if node == DIRECTIONAL { Element::DIRECTIONAL } else { Divided::<N>::element(node, slot) }
 }
