@@ -186,6 +186,7 @@ impl Cells {
             }
             *met += 1;
         }
+        debug_assert!(met.iter().zip(&self.cells).all(|(&met, cell)| met == cell.count), "cells count their receivers");
     }
 
     /// The cell that a receiver is in; `None` if it has no table.
