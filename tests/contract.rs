@@ -23,6 +23,7 @@ fn configurations() -> impl Iterator<Item = &'static str> {
     let others = [
         "stochastic-cull:draw=receiver",
         "light-tree:split=0.5",
+        "light-tree:facing=rms",
         "light-tree:mix=0.5",
         "light-tree:open=0,arity=2,importance=classic",
         "resampled:from=light-tree,m=4,visibility=on",

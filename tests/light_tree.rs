@@ -26,7 +26,7 @@ use common::{
 use glam::Vec3;
 
 /// Every way to weigh and walk that the tree has.
-const WAYS: [&str; 18] = [
+const WAYS: [&str; 19] = [
     "light-tree",
     "light-tree:open=0",
     "light-tree:arity=2,open=0",
@@ -36,6 +36,7 @@ const WAYS: [&str; 18] = [
     "light-tree:importance=classic",
     "light-tree:arity=2,importance=classic",
     "light-tree:distance=minmax",
+    "light-tree:facing=rms",
     "light-tree:importance=classic,distance=minmax",
     "light-tree:far=0.05",
     "light-tree:far=1",

@@ -159,6 +159,21 @@ fn it_is_unbiased_whatever_the_cells_and_the_tables() {
 }
 
 #[test]
+fn a_cluster_of_near_and_far_lights_is_no_trap() {
+    let mut parts = courtyard();
+    parts.lights.push(point(Vec3::new(3e12, 0.0, 1e12), 1e27));
+    parts.lights.push(point(Vec3::new(-2e10, 1e10, 1e9), 1e22));
+    let stage = stage_with(parts, LeaveOut::No, Offset::SCALED);
+    for name in ["visible:cell=4,least=1,cut=1", "visible:cell=4,least=8,cut=24,probes=16"] {
+        for (counts, at) in expected(name, &stage).iter().zip(stage.receivers().iter().step_by(29)) {
+            let sum: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+            assert!((sum - 1.0).abs() < 1e-4, "{name}: {sum} picks at {}", at.position);
+        }
+        assert_kept(name, &stage);
+    }
+}
+
+#[test]
 fn what_is_learned_lowers_the_error() {
     let stage = stage(courtyard());
     let [tree, learned] = [TREE, "visible:cell=3"].map(|name| Runs::new(name, &stage, 8, 4).mse());

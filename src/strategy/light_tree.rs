@@ -7,7 +7,8 @@
 //!
 //! `importance=box` weighs a cluster by what of its box lies above the receiver's horizon and above its emitters';
 //! `importance=classic` is the literature's weight, for comparison. `far` cuts walks short, `split` makes several where
-//! a cluster would be a bad guess, `mix` makes some of the picks by strength alone.
+//! a cluster would be a bad guess, `mix` makes some of the picks by strength alone. `facing=rms`, with boxes, looks more often
+//! at headlights that may face another way: a quarter more error on `downtown`, where few do.
 
 use super::erased::AnySampler;
 use super::parameters::Arguments;

@@ -49,7 +49,7 @@ pub struct How {
     pub weighing: Weighing,
     /// At which distance.
     pub distance: Distance,
-    /// With which emission where any is possible.
+    /// With which emission where any is possible; [`Weighing::Classic`] takes the greatest.
     pub facing: Facing,
     /// A cluster whose squared half diagonal is less than this share of its squared distance, all above the receiver's
     /// horizon and all alike in direction, is not walked into: a light is chosen by peak intensity at once. 0 for
@@ -175,6 +175,7 @@ fn by_box<const N: usize, const MINMAX: bool>(node: &Node<N>, at: &Receiver) -> 
         let floored2 = larger(near2, NEAREST * r2);
         // The mean of 1/d^2 for distances evenly between the least and the greatest.
         let typical2 = (floored2 * far2).sqrt();
+        // Of the same distance: what hardly rises above a horizon counts little, however near.
         let per_metre = 1.0 / typical2.sqrt();
         let cosine = smaller(1.0, mean * per_metre);
         let emission = lit_share * smaller(1.0, node.gain[j] * lit_mean * per_metre);

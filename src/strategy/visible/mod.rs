@@ -23,8 +23,9 @@
 //!
 //! Where fewer than `least` receivers are in a cell, its probes would cost more than what they save: on `stadium`, with cells of
 //! 8 m and a table however few they are, the first pass takes three times as long. So the cells of such receivers are doubled,
-//! up to three times, until there are enough. Receivers that even then share no table choose by `light-tree` as it comes, and so
-//! do those of cells beyond the bound on memory, and all where nothing can stand in between or there is no choice.
+//! up to three times, until there are enough. Receivers that even then share no table choose by `light-tree:facing=rms`, the same
+//! tree, and so do those of cells beyond the bound on memory. Where nothing can stand in between or there is no choice, all choose
+//! by `light-tree` as it comes.
 //!
 //! Source: this project; clusters of a light tree with learned weights as in Wang et al., ACM TOG 40(6), 2021.
 
@@ -78,7 +79,8 @@ impl Strategy for Visible {
     type Sampler = Sampler;
 
     fn configure(arguments: &mut Arguments) -> Result<Self> {
-        // Half or twice a default costs a third of error x CPU s at most, in the mean of two scenes: see `study visible`.
+        // Half or twice a default, of `least` a quarter or four times, costs a sixth of error x CPU s at most, in the mean of two
+        // scenes: see `study visible`.
         let cell =
             "side in metres of the smallest cells whose receivers share a table, one for each way that they face";
         let cell = arguments.real("cell", 8.0, 0.01..=100_000.0, cell)?;

@@ -31,9 +31,12 @@ const PRIOR: f64 = 1.0;
 /// How many probes a cluster's weight counts for, as what there is of it.
 const WEIGHT: f64 = 0.25;
 
+/// Most that a cluster's weight is multiplied with: a probe where it weighs next to nothing says little of where it weighs more.
+const MOST: f64 = 1000.0;
+
 /// Picks by the clusters' shares of the cell's light, over those by their weights at the receiver, where `floor` is nothing. A
 /// weight may be next to nothing where much arrives, as from a sign that stands out of its facade in a cluster of windows that do
-/// not: without these picks a few pixels of downtown have half of the error.
+/// not: without these picks a few pixels of downtown have a third of the error.
 const COMMON: f64 = 0.2;
 
 /// How tables are learned.
@@ -129,7 +132,7 @@ impl Lesson {
         let sums = clusters.iter().fold([0.0; 2], |[seen, all], c| [seen + c.share * c.seen(), all + c.share]);
         let mean = if sums[0] > 0.0 { sums[0] / sums[1] } else { 1.0 };
         let floor = self.floor;
-        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor) as f32)
+        clusters.iter().map(move |cluster| ((1.0 - floor) * cluster.seen() / mean + floor).min(MOST) as f32)
     }
 
     /// The clusters' shares of the light of the cell: root mean squares of what is seen of each at a receiver, over all that is
@@ -253,7 +256,8 @@ impl<const N: usize> Table<N> {
         (nodes + 1) * size_of::<Row<N>>()
     }
 
-    /// The factors are those of the nodes' clusters, in order, and of the directional lights if there are any.
+    /// What was learned are the factors and shares of the nodes' clusters, in order, and of the directional lights if there are
+    /// any.
     fn new(nodes: &[Divided<N>], mut learned: impl Iterator<Item = (f32, f32)>) -> Self {
         let mut next = |is: bool| if is { learned.next().unwrap_or((1.0, 0.0)) } else { (0.0, 0.0) };
         let row = |divided: &Divided<N>| {
