@@ -277,3 +277,20 @@ impl<const N: usize> Table<N> {
         size_of_val(&self.rows[..])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Cluster, Lesson};
+    use crate::strategy::tree::partition::Element;
+
+    #[test]
+    fn a_cluster_tried_where_it_weighs_next_to_nothing_does_not_take_all_picks_elsewhere() {
+        let lesson = Lesson { cut: 2, probes: 4, floor: 0.25 };
+        let mut plain = Cluster { share: 1.0, ..Cluster::new(Element::DIRECTIONAL) };
+        plain.add(1.0, true);
+        let mut faint = Cluster { share: 1e-38, ..plain };
+        faint.add(1e40, true);
+        let factors: Vec<f64> = lesson.factors(&[plain, faint]).map(f64::from).collect();
+        assert!(factors.iter().all(|factor| (lesson.floor..=1e4).contains(factor)), "{factors:?}");
+    }
+}
