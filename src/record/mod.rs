@@ -5,6 +5,7 @@
 //! Numbers are in base units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A
 //! [`study`]'s folder holds `study.json` and a CSV file a table in the same manner.
 
+pub mod interval;
 mod number;
 pub mod row;
 pub mod run;
@@ -16,8 +17,9 @@ pub mod summary;
 
 pub use row::Row;
 pub use run::{Machine, RunRecord};
-pub use scene::{ReferenceRecord, SceneRecord};
-pub use summary::{Claim, Counts, Interval, Summary};
+pub use scene::{ReferenceRecord, SceneRecord, SharedWork};
+pub use interval::Interval;
+pub use summary::{Claim, Counts, Point, Read, Reading, Summary};
 
 /// Version of the files' layout; files of another version are refused, never guessed at.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;

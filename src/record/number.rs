@@ -28,6 +28,20 @@ pub(super) mod channels {
     }
 }
 
+/// The same for a list.
+pub(super) mod list {
+    use super::Wrapped;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(in super::super) fn serialize<S: Serializer>(values: &[f64], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(values.iter().map(|&value| Wrapped(value)))
+    }
+
+    pub(in super::super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        Ok(Vec::<Wrapped>::deserialize(from)?.into_iter().map(|value| value.0).collect())
+    }
+}
+
 pub(super) fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
     let number = match *value {
         v if v.is_finite() => Number::Finite(v),

@@ -22,8 +22,19 @@ pub struct ReferenceRecord {
     pub cpu_s: f64,
     /// Whether it came from the cache.
     pub cached: bool,
-    /// Whether it covers the fixed subset of receivers only (1,024 of them) rather than all.
+    /// Whether it covers a subset of the receivers only, so that its work stays within its bound.
     pub subset: bool,
+}
+
+/// Work that all strategies of a scene share, off their clocks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SharedWork {
+    /// What was done: "occluders".
+    pub what: String,
+    /// CPU seconds that it took.
+    #[serde(with = "number")]
+    pub cpu_s: f64,
 }
 
 /// One scene and all strategies on it.
@@ -59,6 +70,16 @@ pub struct SceneRecord {
     pub rel_mse_epsilon: [f64; 3],
     /// What errors are taken against.
     pub reference: ReferenceRecord,
+    /// What was done once for all strategies.
+    pub shared: Vec<SharedWork>,
+    /// The relMSE that [`Summary::seconds_to`] is read at, greatest first.
+    #[serde(with = "number::list")]
+    pub errors: Vec<f64>,
+    /// The CPU seconds that [`Summary::error_at`] is read at, least first.
+    #[serde(with = "number::list")]
+    pub times_s: Vec<f64>,
+    /// Which of [`errors`](Self::errors) ranks the rows: by the CPU seconds to it.
+    pub ranked_by: u32,
     /// What a reader must know: a default exposure, lights left out.
     pub notes: Vec<String>,
     /// One per strategy, in any order.

@@ -1,20 +1,7 @@
-//! What is known of a strategy once all its runs at its largest budget are done.
+//! What is known of a strategy once all its runs are done.
 
-use super::number;
+use super::{Interval, number};
 use serde::{Deserialize, Serialize};
-
-/// A mean over runs and half the width of its 95 % Student-t interval, in the same unit; the half is infinite for a
-/// single run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Interval {
-    /// The mean over runs.
-    #[serde(with = "number")]
-    pub mean: f64,
-    /// From the mean to either end.
-    #[serde(with = "number")]
-    pub half_width: f64,
-}
 
 /// What a strategy says about its own estimate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -87,10 +74,51 @@ pub struct Counts {
     pub choosing_rays: u64,
 }
 
-/// One strategy on one scene at its largest budget.
+/// One budget of a strategy: a point of its curve of error against time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Passes, done in one block.
+    pub passes: u32,
+    /// CPU seconds from nothing to the image: set-up, arrival and passes.
+    pub cpu_s: Interval,
+    /// relMSE of the image.
+    pub rel_mse: Interval,
+}
+
+/// How a figure was found on a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Read {
+    /// At a budget, or between two of them.
+    Measured,
+    /// Beyond the largest budget, if noise goes on falling as 1 / time.
+    Extrapolated,
+    /// An error that its bias alone exceeds.
+    Never,
+    /// A time before the first image is there.
+    TooSoon,
+    /// Nothing was measured, or the bias is not known.
+    Unknown,
+}
+
+/// A figure read off a strategy's curve of error against time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reading {
+    /// Where it was read: a relMSE, or CPU seconds.
+    #[serde(with = "number")]
+    pub at: f64,
+    /// What was found there: CPU seconds, or a relMSE.
+    pub value: Interval,
+    /// How.
+    pub how: Read,
+}
+
+/// One strategy on one scene.
 ///
-/// Errors are over receiver pixels against the scene's reference. With [`error`](Self::error) or
-/// [`skipped`](Self::skipped) set the numbers mean nothing.
+/// Errors are over the measured receivers against the scene's reference, and those of the largest budget where no other
+/// is named. With [`error`](Self::error) or [`skipped`](Self::skipped) set the numbers mean nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
@@ -102,15 +130,19 @@ pub struct Summary {
     pub chooses: bool,
     /// Independent runs.
     pub runs: u32,
+    /// Its curve, smallest budget first.
+    pub curve: Vec<Point>,
     /// Passes at the largest budget.
     pub passes: u32,
-    /// CPU seconds of building, mean over runs.
-    #[serde(with = "number")]
-    pub setup_cpu_s: f64,
-    /// CPU seconds of sampling all passes, without set-up, mean over runs.
-    #[serde(with = "number")]
-    pub cpu_s: f64,
-    /// Wall seconds of sampling, mean over runs.
+    /// CPU seconds of building.
+    pub setup_cpu_s: Interval,
+    /// CPU seconds of coming to every receiver once, whatever the number of passes; not known from one budget.
+    pub arrival_cpu_s: Interval,
+    /// CPU seconds of each pass after that.
+    pub pass_cpu_s: Interval,
+    /// CPU seconds of sampling at the largest budget, without set-up.
+    pub cpu_s: Interval,
+    /// Wall seconds of the same, mean over runs.
     #[serde(with = "number")]
     pub wall_s: f64,
     /// Bytes on the heap after building.
@@ -125,6 +157,8 @@ pub struct Summary {
     pub rel_bias2: Interval,
     /// Energy ratio less 1: the bias of the image's mean, as a share of it.
     pub mean_bias: Interval,
+    /// The same with an interval that holds for all unbiased rows of the scene together, at 99 % (Sidak 1967).
+    pub simultaneous_bias: Interval,
     /// The bias of the image's mean that a 5 % test would find with 80 % power, as a share of it.
     #[serde(with = "number")]
     pub detectable_bias: f64,
@@ -133,12 +167,25 @@ pub struct Summary {
     ///
     /// It belongs to that budget: arriving at a receiver is paid once per block of passes, so that CPU time is affine
     /// in the passes and V is not the same at every budget.
-    #[serde(with = "number")]
-    pub variance_seconds: f64,
+    pub variance_seconds: Interval,
+    /// t* = V / b^2: CPU seconds of sampling from which on bias outweighs noise; none where no bias may be.
+    #[serde(default)]
+    pub balance_s: Option<Interval>,
+    /// CPU seconds, set-up included, to each of [`SceneRecord::errors`](super::SceneRecord::errors).
+    pub seconds_to: Vec<Reading>,
+    /// relMSE after each of [`SceneRecord::times_s`](super::SceneRecord::times_s).
+    pub error_at: Vec<Reading>,
+    /// Its rank among the unbiased rows by [`SceneRecord::ranked_by`](super::SceneRecord::ranked_by), first and last that
+    /// the runs allow; none where it has none.
+    #[serde(default)]
+    pub rank: Option<[u32; 2]>,
+    /// Rows that share a letter were not told apart (Holm 1979 over all pairs, 5 % in all; Piepho 2004).
+    #[serde(default)]
+    pub letters: String,
     /// Error per sample, relMSE times passes, over that of the oracle at the receivers that this was run on; none where
     /// no oracle was run.
     #[serde(default)]
-    pub times_oracle: Option<f64>,
+    pub times_oracle: Option<Interval>,
     /// The receivers that its figures are for, where they are not all that were measured: an oracle's.
     #[serde(default)]
     pub receivers: Option<u64>,
@@ -146,33 +193,41 @@ pub struct Summary {
     pub counts: Counts,
     /// Whether the two halves of the runs differ by more than their intervals.
     pub unstable: bool,
-    /// Why it was not run: "skipped: about 40 s".
+    /// Why it was not run: "skipped: one pass is 40 s of counted work".
     pub skipped: Option<String>,
-    /// Why it failed.
+    /// Why it failed: a check, a bias, a scene that it cannot serve.
     pub error: Option<String>,
 }
 
 impl Summary {
     /// A summary without figures: of what was skipped or failed, or before its runs.
     pub fn blank(strategy: String, claim: Claim, chooses: bool) -> Self {
-        let none = Interval { mean: f64::NAN, half_width: f64::NAN };
         Self {
             strategy,
             claim,
             chooses,
             runs: 0,
+            curve: Vec::new(),
             passes: 0,
-            setup_cpu_s: f64::NAN,
-            cpu_s: f64::NAN,
+            setup_cpu_s: Interval::NONE,
+            arrival_cpu_s: Interval::NONE,
+            pass_cpu_s: Interval::NONE,
+            cpu_s: Interval::NONE,
             wall_s: f64::NAN,
             heap_bytes: 0,
-            rel_mse: none,
-            mse: none,
-            rel_mse_trimmed: none,
-            rel_bias2: none,
-            mean_bias: none,
+            rel_mse: Interval::NONE,
+            mse: Interval::NONE,
+            rel_mse_trimmed: Interval::NONE,
+            rel_bias2: Interval::NONE,
+            mean_bias: Interval::NONE,
+            simultaneous_bias: Interval::NONE,
             detectable_bias: f64::NAN,
-            variance_seconds: f64::NAN,
+            variance_seconds: Interval::NONE,
+            balance_s: None,
+            seconds_to: Vec::new(),
+            error_at: Vec::new(),
+            rank: None,
+            letters: String::new(),
             times_oracle: None,
             receivers: None,
             counts: Counts::default(),
