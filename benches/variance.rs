@@ -21,7 +21,7 @@ use citylights::base::error::Result;
 use citylights::base::random::RunKey;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::reference::Reference;
-use citylights::measure::target::Target;
+use citylights::measure::target::{Target, spread};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::receiver::Receiver;
@@ -57,7 +57,7 @@ fn main() {
 
 fn bench(criterion: &mut Criterion<Reported>, scene: &str, entries: &[Entry]) {
     let stage = common::stage(scene);
-    let target = Target::whole(&stage).thinned(RECEIVERS);
+    let target = Target::of(&stage, spread(stage.receivers(), RECEIVERS));
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("references");
     let reference =
         Reference::compute(&target, 1e-3, &cache, &Unobserved).unwrap_or_else(|error| panic!("{scene}: {error}"));
@@ -69,8 +69,8 @@ fn bench(criterion: &mut Criterion<Reported>, scene: &str, entries: &[Entry]) {
             .unwrap_or_else(|error| panic!("{name}: {error}"));
         let image = |run, first, passes| {
             let key = RunKey { seed: SEED, run };
-            let mut film = Film::starting_at(target.receivers.len(), first);
-            Plan { stage: &stage, receivers: &target.receivers, sampler: sampler.as_ref(), key }
+            let mut film = Film::starting_at(target.frame.len(), first);
+            Plan { stage: &stage, receivers: &target.frame, sampler: sampler.as_ref(), key }
                 .run_parallel(passes, &mut film);
             film.image()
         };

@@ -181,7 +181,7 @@ impl Session {
             }
         };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
-        let Compared { mut scene, mut rows, truth } = compared.inspect_err(resumable)?;
+        let Compared { mut scene, mut rows, truth, target } = compared.inspect_err(resumable)?;
         let options = peers::measure::Options {
             peers,
             python: &python(arguments.peer_python.as_deref()),
@@ -191,7 +191,7 @@ impl Session {
             folder: &self.folder,
             patience: Duration::from_secs_f64(arguments.peer_patience),
         };
-        let others = peers::measure::measure(stage, &truth, &options, &self.before, &mut self.rows, progress);
+        let others = peers::measure::measure(&target, &truth, &options, &self.before, &mut self.rows, progress);
         let others = others.inspect_err(resumable)?;
         for summary in &others.summaries {
             if let Some(why) = summary.skipped.as_ref().or(summary.error.as_ref()) {

@@ -3,9 +3,9 @@
 use super::progress::Progress;
 use super::render::save;
 use super::scene::{SceneOptions, check_output, pool, threads};
-use super::{Outcome, print, say};
+use super::{Outcome, print};
 use crate::measure::reference::Reference;
-use crate::measure::target::{MOST_PAIRS, Target};
+use crate::measure::target::Target;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -35,10 +35,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;
         progress.scene(stage.scene().name());
-        let pairs = stage.receivers().len() as u64 * stage.scene().lights().len() as u64;
-        if pairs > MOST_PAIRS {
-            say(&format!("{}: {pairs} pairs of pixel and light; this takes a while", stage.scene().name()));
-        }
         let reference = Reference::compute(&Target::whole(&stage), arguments.noise, &arguments.cache, &progress)?;
         save(&stage, reference.truth.mean(), &arguments.output)?;
         let kind = if reference.exact_sum { "exact sum" } else { "stratified" };

@@ -43,26 +43,28 @@ pub struct Options<'a> {
 }
 
 /// What a comparison found on one scene.
-pub struct Compared {
+pub struct Compared<'a> {
+    /// The frame, and where errors were taken.
+    pub target: Target<'a>,
     /// The scene, with a summary of each strategy.
     pub scene: SceneRecord,
     /// All rows.
     pub rows: Vec<Row>,
-    /// What errors were taken against, at the receivers of [`Target::new`].
+    /// What errors were taken against, at the target's measured receivers.
     pub truth: Truth,
 }
 
 /// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
 /// repeated: runs whose image is kept (see [`Films`]).
-pub fn compare(
-    stage: &Stage,
+pub fn compare<'a>(
+    stage: &'a Stage,
     file: &str,
     options: &Options<'_>,
     before: &[Row],
     rows: &mut RowWriter,
     watch: &dyn Observer,
-) -> Result<Compared> {
-    let target = Target::new(stage);
+) -> Result<Compared<'a>> {
+    let target = Target::whole(stage);
     let pilots = pilots(&target, options, watch)?;
     let ladders: Vec<Vec<u32>> = options
         .strategies
@@ -105,15 +107,8 @@ pub fn compare(
     if left_out > 0 {
         notes.push(format!("{left_out} lights face away from every visible point and were left out"));
     }
-    let whole_frames = options.strategies.iter().zip(&pilots).filter(|(_, pilot)| {
-        let pilot = pilot.as_ref().and_then(|p| p.as_ref().ok());
-        target.subset && pilot.is_some_and(|pilot| pilot.whole_frames)
-    });
-    for (strategy, _) in whole_frames {
-        notes.push(format!("`{}` saw no more of its frame than the receivers measured", strategy.name()));
-    }
     let (scene, rows) = (record(&target, file, &reference, notes, summaries), comparison.rows);
-    Ok(Compared { scene, rows, truth: reference.truth })
+    Ok(Compared { scene, rows, truth: reference.truth, target })
 }
 
 fn record(
@@ -134,7 +129,7 @@ fn record(
         lights: stage.scene().lights().len() as u64,
         width,
         height,
-        pixels_measured: target.receivers.len() as u64,
+        pixels_measured: target.places.len() as u64,
         receivers: stage.receivers().len() as u64,
         sky_share,
         emitter_share,
@@ -146,7 +141,7 @@ fn record(
             rays: reference.rays,
             cpu_s: reference.cpu_s,
             cached: reference.cached,
-            subset: target.subset,
+            subset: target.is_subset(),
         },
         notes,
         summaries,
@@ -272,7 +267,7 @@ impl Comparison<'_> {
                         r.scene == self.scene() && r.strategy == strategy.name() && r.run == run && r.error.is_none()
                     })
                     .collect();
-                let film = films.load(self.scene(), strategy.name(), run, self.target.receivers.len());
+                let film = films.load(self.scene(), strategy.name(), run, self.target.places.len());
                 match film.filter(|_| rows.iter().any(|row| row.passes == last)) {
                     Some(film) => {
                         self.rows.extend(rows.into_iter().cloned());

@@ -23,7 +23,7 @@ pub(super) struct Once<'a> {
 
 impl Once<'_> {
     /// Builds the strategy and goes through `budgets`, ascending numbers of passes, with a row for each; gives the last
-    /// image.
+    /// image at the measured receivers.
     ///
     /// A strategy that cannot serve the scene gets one row that says so, and no image. `each` may end the run by
     /// failing.
@@ -43,13 +43,13 @@ impl Once<'_> {
                 return Ok(None);
             }
         };
-        let plan = Plan { stage: target.stage, receivers: &target.receivers, sampler: sampler.as_ref(), key };
-        let mut film = Film::new(target.receivers.len());
+        let plan = Plan { stage: target.stage, receivers: &target.frame, sampler: sampler.as_ref(), key };
+        let mut film = Film::new(target.frame.len());
         let mut spent = Spent::default();
         for &passes in budgets {
             let ((), block) = timed(|| plan.run(passes - film.passes(), &mut film));
             spent += block;
-            let errors = truth.errors(&film.image());
+            let errors = truth.errors(&target.at_places(&film.image()));
             let row = Row {
                 setup_cpu_s: setup.cpu,
                 cpu_s: spent.cpu,
@@ -59,6 +59,6 @@ impl Once<'_> {
             };
             each(errors.written_to(row))?;
         }
-        Ok(Some(film.image()))
+        Ok(Some(target.at_places(&film.image())))
     }
 }

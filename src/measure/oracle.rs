@@ -51,7 +51,7 @@ pub(super) fn settle<'a>(
     watch: &dyn Observer,
 ) -> Result<()> {
     let most = options.budget.usual_passes;
-    let places: Vec<usize> = target::places(target.receivers.len(), RECEIVERS).collect();
+    let places: Vec<usize> = target::places(target.places.len(), RECEIVERS).collect();
     let compared = |s: &Summary| s.chooses && s.runs > 0 && s.error.is_none();
     let mut rungs: Vec<u32> = summaries.iter().filter(|s| compared(s)).map(|s| s.passes.min(most)).collect();
     rungs.sort_unstable();
@@ -109,7 +109,8 @@ impl Run<'_> {
             Ok(sampler) => sampler,
             Err(error) => return (Summary { error: Some(error.to_string()), ..blank }, None),
         };
-        let receivers: Vec<Receiver> = self.places.iter().map(|&i| self.target.receivers[i]).collect();
+        let measured = self.target.measured();
+        let receivers: Vec<Receiver> = self.places.iter().map(|&i| measured[i]).collect();
         let few: Vec<Receiver> = receivers.iter().step_by(COUNTED).copied().collect();
         let key = RunKey { seed: self.seed, run: RUNS };
         let plan = Plan { stage: self.target.stage, receivers: &few, sampler: &*sampler, key };

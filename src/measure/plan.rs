@@ -5,7 +5,7 @@
 
 use super::clock::timed;
 use super::errors::Truth;
-use super::target::{self, Target};
+use super::target::Target;
 use crate::base::colour::luminance;
 use crate::base::draws::Points;
 use crate::base::error::Result;
@@ -46,8 +46,6 @@ pub struct Pilot {
     energy_variance: f64,
     /// What became of the samples.
     pub counts: Counts,
-    /// Whether the strategy works on whole frames.
-    pub whole_frames: bool,
 }
 
 /// Receivers of a pilot.
@@ -66,11 +64,11 @@ impl Pilot {
     /// would be out of proportion, and neighbours too far apart to be any.
     pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64) -> Result<Self> {
         let sampler = strategy.build(BuildContext { stage: target.stage, seed })?;
-        let all = target.receivers.len();
-        let places: Vec<usize> = target::places(all, RECEIVERS).collect();
-        let few: Vec<Receiver> = places.iter().map(|&i| target.receivers[i]).collect();
+        let all = target.frame.len();
+        let Target { places, .. } = target.thinned(RECEIVERS);
+        let few: Vec<Receiver> = places.iter().map(|&i| target.frame[i]).collect();
         let whole = sampler.most_passes() == 1;
-        let frame: &[Receiver] = if whole { &target.receivers } else { &few };
+        let frame: &[Receiver] = if whole { &target.frame } else { &few };
         let plan = |run| Plan {
             stage: target.stage,
             receivers: frame,
@@ -110,7 +108,6 @@ impl Pilot {
             spread: strategy.points() != Points::Random,
             energy_variance,
             counts,
-            whole_frames: whole,
         })
     }
 
@@ -166,7 +163,6 @@ mod tests {
             spread: false,
             energy_variance: 0.0,
             counts: Counts::default(),
-            whole_frames: false,
         };
         assert_eq!(pilot.ladder(Budget { usual_passes: 20, most_passes: 20, seconds: 100.0 }, 16), [1, 2, 4, 8, 16]);
         // 8 passes in 4 blocks take 0.4 + 0.8 s.

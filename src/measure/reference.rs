@@ -65,7 +65,8 @@ impl Reference {
     }
 
     fn level(target: &Target<'_>, points: u32, cache: &Path, watch: &dyn Observer) -> Result<Self> {
-        let n = target.receivers.len();
+        let measured = target.measured();
+        let n = measured.len();
         let (file, mut tiles) = TileFile::open(cache, &name(target, points), n)?;
         let missing: Vec<usize> = (0..tiles.len()).filter(|&tile| tiles[tile].is_none()).collect();
         let spent = AtomicU64::new(0);
@@ -75,7 +76,7 @@ impl Reference {
             let done = missing.par_iter().map(|&tile| {
                 watch.check()?;
                 let clock = ThreadTime::now();
-                let receivers = &target.receivers[tiles::range(tile, n)];
+                let receivers = &measured[tiles::range(tile, n)];
                 let values: Vec<Exact> = receivers.iter().map(|at| exact(target.stage, at, points, SEED)).collect();
                 spent.fetch_add(clock.elapsed().as_nanos() as u64, Ordering::Relaxed);
                 file.lock().map_err(|_| Error::Interrupted)?.append(tile, &values)?;
@@ -118,7 +119,7 @@ fn name(target: &Target<'_>, points: u32) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene_hash(target.stage.scene()).as_bytes());
     hasher.update(format!("{VERSION} {:?} {points}", target.stage.offset()).as_bytes());
-    target.receivers.iter().for_each(|at| {
+    target.places.iter().map(|&i| &target.frame[i]).for_each(|at| {
         hasher.update(&at.pixel.to_le_bytes());
     });
     hasher.finalize().to_hex()[..32].to_owned()

@@ -1,48 +1,55 @@
-//! Which receivers are measured?
+//! What do strategies render, and where are errors taken?
+//!
+//! A strategy always renders whole frames, as a user does: what it shares between neighbours, and what an arrival or a
+//! pass costs, is then what it will be elsewhere. Errors are taken at some of the frame's receivers, or at all.
 
 use crate::scene::receiver::Receiver;
 use crate::visibility::stage::Stage;
+use glam::Vec3;
 use std::borrow::Cow;
 
-/// Above this many pixel-light pairs, errors are measured at [`SUBSET`] receivers only.
-pub const MOST_PAIRS: u64 = 5_000_000_000;
-
-/// How many receivers stand for all where there are too many pairs.
-pub const SUBSET: usize = 1_024;
-
-/// The receivers that errors are taken over.
+/// A frame, and the receivers in it that errors are taken over.
+#[derive(Clone)]
 pub struct Target<'a> {
     /// The scene made ready.
     pub stage: &'a Stage,
-    /// The measured receivers.
-    pub receivers: Cow<'a, [Receiver]>,
-    /// Whether they are a fixed stratified subset.
-    pub subset: bool,
+    /// The receivers that strategies are run on.
+    pub frame: Cow<'a, [Receiver]>,
+    /// Which of them are measured: indices into the frame, ascending.
+    pub places: Vec<usize>,
 }
 
 impl<'a> Target<'a> {
-    /// All receivers, or the fixed subset where a reference of all would take too long.
-    pub fn new(stage: &'a Stage) -> Self {
-        let all = stage.receivers();
-        let pairs = all.len() as u64 * stage.scene().lights().len() as u64;
-        let subset = pairs > MOST_PAIRS && all.len() > SUBSET;
-        let receivers = if subset { Cow::Owned(spread(all, SUBSET)) } else { Cow::Borrowed(all) };
-        Self { stage, receivers, subset }
-    }
-
-    /// Every receiver, however long it takes.
+    /// All that the camera sees, measured everywhere.
     pub fn whole(stage: &'a Stage) -> Self {
-        Self { stage, receivers: Cow::Borrowed(stage.receivers()), subset: false }
+        let frame = Cow::Borrowed(stage.receivers());
+        Self { stage, places: (0..frame.len()).collect(), frame }
     }
 
-    /// These receivers, whoever chose them.
+    /// These receivers, whoever chose them: a frame of their own, measured everywhere.
     pub fn of(stage: &'a Stage, receivers: Vec<Receiver>) -> Self {
-        Self { stage, receivers: Cow::Owned(receivers), subset: true }
+        Self { stage, places: (0..receivers.len()).collect(), frame: Cow::Owned(receivers) }
     }
 
-    /// The same target thinned out to about `count` receivers, for pilots.
+    /// The same frame measured at up to `count` of the measured receivers: one from each stratum, see [`places`].
     pub fn thinned(&self, count: usize) -> Self {
-        Self { stage: self.stage, receivers: Cow::Owned(spread(&self.receivers, count)), subset: self.subset }
+        let places = places(self.places.len(), count).map(|i| self.places[i]).collect();
+        Self { places, ..self.clone() }
+    }
+
+    /// Whether errors are taken at some of the frame's receivers only.
+    pub fn is_subset(&self) -> bool {
+        self.places.len() < self.frame.len()
+    }
+
+    /// The measured receivers.
+    pub fn measured(&self) -> Vec<Receiver> {
+        self.places.iter().map(|&i| self.frame[i]).collect()
+    }
+
+    /// An image of the frame at the measured receivers.
+    pub fn at_places(&self, image: &[Vec3]) -> Vec<Vec3> {
+        self.places.iter().map(|&i| image[i]).collect()
     }
 }
 

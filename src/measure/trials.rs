@@ -94,7 +94,7 @@ impl Trials<'_> {
             return Ok(0.0);
         }
         let frame = Frame::new(
-            &self.target.receivers[..self.target.receivers.len().min(1)],
+            &self.target.frame[..self.target.frame.len().min(1)],
             RunKey { seed: self.seed, run: 0 },
         );
         let mut times: Vec<f64> = alone()?

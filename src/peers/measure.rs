@@ -54,12 +54,12 @@ pub struct Measured {
     pub notes: Vec<String>,
 }
 
-/// Runs peers on a scene. `truth` is that of [`Target::new`]. Rows go to `writer` as they come; `before` holds those of
+/// Runs peers on the scene of a target. `truth` is that at its measured receivers. Rows go to `writer` as they come; `before` holds those of
 /// finished runs, which are not repeated: runs whose image is kept (see [`Films`]).
 ///
 /// Fails only where the result folder cannot be written or the user wants to stop.
 pub fn measure(
-    stage: &Stage,
+    target: &Target<'_>,
     truth: &Truth,
     options: &Options<'_>,
     before: &[Row],
@@ -69,7 +69,7 @@ pub fn measure(
     if options.peers.is_empty() {
         return Ok(Measured::default());
     }
-    let receivers = Target::new(stage).receivers;
+    let (stage, receivers) = (target.stage, target.measured());
     let places = mask::clear(stage, &receivers);
     let ground = Ground {
         stage,

@@ -190,7 +190,7 @@ fn at_size(
 }
 
 fn growth_cells(summary: &Summary, timing: Option<Timing>, target: &Target<'_>) -> Vec<Cell> {
-    let receivers = target.receivers.len();
+    let receivers = target.places.len();
     let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
     if measured(summary) {
         cells.extend([

@@ -247,7 +247,7 @@ fn by_measuring(
         let timing = Timing::of(&trials, strategy, &summary, frame)?;
         found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
     }
-    let receivers = target.receivers.len() as f64;
+    let receivers = target.places.len() as f64;
     let (oracle, intensity) = (of(&found, "oracle"), of(&found, "intensity"));
     for one in &found {
         let summary = &one.summary;

@@ -31,7 +31,7 @@ impl Timing {
         }
         let state_s = trials.pass_state_s(strategy)?;
         let passes = f64::from(summary.passes);
-        let samples = passes * trials.target.receivers.len() as f64;
+        let samples = passes * trials.target.frame.len() as f64;
         let sample_s = ((summary.cpu_s - passes * state_s) / samples).max(0.0);
         Ok(Some(Self { state_s, sample_s, frame }))
     }

@@ -112,7 +112,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .iter()
             .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
             .collect();
-        let measured = measure(session, &format!("{name} light"), &contenders, &few.receivers, &reference.truth)?;
+        let measured = measure(session, &format!("{name} light"), &contenders, &few.frame, &reference.truth)?;
         for points in POINTS {
             let series = format!("{name} {points}");
             let mut errors = Vec::new();

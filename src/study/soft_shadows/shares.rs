@@ -62,7 +62,7 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
     let stage = Stage::new(several_lights(session)?, LeaveOut::Yes, Offset::SCALED);
     let target = Target::of(&stage, spread(stage.receivers(), session.options.pixels));
-    let receivers: &[Receiver] = &target.receivers;
+    let receivers: &[Receiver] = &target.frame;
     let reference = Reference::compute(&target, 1e-5, &session.options.cache, session.watch)?;
     let moments: Vec<Vec<Moment>> = receivers.par_iter().map(|at| pilot(&stage, at, session.options.seed)).collect();
     // What fixed counts spend: a point on each triangle that can add anything.

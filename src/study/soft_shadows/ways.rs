@@ -130,7 +130,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .map(|(stage, sampler)| Contender { stage, sampler: &**sampler, passes: PASSES })
             .collect();
         let measured =
-            measure(session, &format!("{name} light, by way"), &contenders, &target.receivers, &reference.truth)?;
+            measure(session, &format!("{name} light, by way"), &contenders, &target.frame, &reference.truth)?;
         for ((by, _), found) in LightSampling::NAMED.iter().zip(&measured) {
             let mut cells: Vec<Cell> = vec![name.into(), (*by).into(), found.cpu_s.into()];
             cells.extend(both(found.rel_mse));
