@@ -1,28 +1,27 @@
 //! The main job: all strategies on one scene, interleaved, error against time.
 
+use super::curve::Curve;
+use super::engine::Engine;
 use super::errors::Truth;
+use super::experiment::{Experiment, Found, Keep, Runs};
 use super::films::Films;
 use super::gate::Gate;
+use super::headline::{self, Entry, Headline};
 use super::observer::Observer;
-use super::once::Once;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
 use super::reference::{Reference, scene_hash};
-use super::summary::{blank, counts, summarise};
+use super::summary::{Jackknife, bias, blank, counts, summarise};
 use super::target::Target;
-use super::trials::shuffle;
-use crate::base::error::{Error, Result};
-use crate::base::random::RunKey;
+use crate::base::error::Result;
+use crate::base::statistics::sidak;
 use crate::record::store::RowWriter;
-use crate::record::{ReferenceRecord, Row, SceneRecord, Summary};
+use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, Summary};
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
 use crate::visibility::stage::Stage;
 use glam::Vec3;
-use std::collections::HashMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
 
 /// How a comparison is done.
 pub struct Options<'a> {
@@ -34,8 +33,8 @@ pub struct Options<'a> {
     pub repeats: u32,
     /// The user's seed.
     pub seed: u64,
-    /// Runs side by side.
-    pub threads: usize,
+    /// Who times the runs.
+    pub engine: &'a Engine<'a>,
     /// Folder of cached references.
     pub cache: &'a Path,
     /// The result folder.
@@ -44,18 +43,18 @@ pub struct Options<'a> {
 
 /// What a comparison found on one scene.
 pub struct Compared<'a> {
-    /// The frame, and where errors were taken.
-    pub target: Target<'a>,
     /// The scene, with a summary of each strategy.
     pub scene: SceneRecord,
     /// All rows.
     pub rows: Vec<Row>,
-    /// What errors were taken against, at the target's measured receivers.
+    /// The frame, and where errors were taken.
+    pub target: Target<'a>,
+    /// What they were taken against.
     pub truth: Truth,
 }
 
 /// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
-/// repeated: runs whose image is kept (see [`Films`]).
+/// repeated.
 pub fn compare<'a>(
     stage: &'a Stage,
     file: &str,
@@ -66,39 +65,132 @@ pub fn compare<'a>(
 ) -> Result<Compared<'a>> {
     let target = Target::whole(stage);
     let pilots = pilots(&target, options, watch)?;
-    let ladders: Vec<Vec<u32>> = options
-        .strategies
-        .iter()
-        .zip(&pilots)
-        .map(|(strategy, pilot)| ladder(strategy, pilot.as_ref().and_then(|p| p.as_ref().ok()), stage, options, before))
-        .collect();
-    let best = options.strategies.iter().zip(&pilots).zip(&ladders).filter_map(|((strategy, pilot), ladder)| {
+    let ladder = |pilot: &Option<Trial>| {
+        let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
+        pilot.map_or_else(Vec::new, |pilot| pilot.ladder(options.budget, options.repeats))
+    };
+    let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
+    let reference = Reference::compute(&target, accuracy(options, &pilots, &ladders), options.cache, watch)?;
+
+    let strategies: Vec<&Configured> = options.strategies.iter().collect();
+    let experiment = Experiment {
+        engine: options.engine,
+        target: &target,
+        truth: &reference.truth,
+        strategies: &strategies,
+        ladders: &ladders,
+        runs: options.repeats,
+        seed: options.seed,
+    };
+    let mut folder = Folder {
+        scene: stage.scene().name(),
+        films: Films::of(options.folder),
+        before,
+        rows,
+        receivers: target.places.len(),
+    };
+    let (runs, account) = experiment.run(&mut folder, watch)?;
+
+    let mut summaries = Vec::new();
+    let mut parts = Vec::new();
+    for (((strategy, pilot), ladder), runs) in strategies.iter().zip(&pilots).zip(&ladders).zip(&runs) {
+        let (summary, jackknife) = summary(strategy, pilot.as_ref(), ladder, runs, &reference.truth);
+        summaries.push(summary);
+        parts.push((Curve::of(runs, ladder), jackknife));
+    }
+    hold_to_claims(&mut summaries, &reference.truth, &runs);
+    let entries =
+        summaries.iter_mut().zip(parts).map(|(summary, (curve, jackknife))| Entry { summary, curve, jackknife });
+    let headline = headline::settle(&mut entries.collect::<Vec<_>>());
+    oracle::settle(&target, &reference.truth, options, &runs, &mut summaries, watch)?;
+
+    let notes = notes(stage, account.stray_share());
+    let scene = record(&target, file, &reference, &headline, notes, summaries);
+    let rows = runs.into_iter().flat_map(|runs| runs.rows).collect();
+    Ok(Compared { scene, rows, target, truth: reference.truth })
+}
+
+/// A pilot, or why there is none; nothing of what is not run against the clock.
+type Trial = Result<Pilot>;
+
+fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Trial>>> {
+    let few = target.thinned(plan::RECEIVERS);
+    let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
+    watch.begin("checks and pilots", options.strategies.len() as u64);
+    let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
+    let mut pilots = Vec::new();
+    for strategy in options.strategies {
+        watch.check()?;
+        let pilot = || -> Trial {
+            gate.pass(strategy)?;
+            let pilot = options.engine.alone(|meter| Pilot::run(target, &rough, strategy, options.seed, meter))??;
+            gate.charged(strategy, pilot.account)?;
+            Ok(pilot)
+        };
+        pilots.push((!oracle::is_oracle(strategy)).then(pilot));
+        watch.advance(1);
+    }
+    watch.end();
+    Ok(pilots)
+}
+
+/// The relMSE of its own that a reference may have: a hundredth of the best row's error, with some room for the pilot's
+/// own noise; never below what f32 can hold.
+fn accuracy(options: &Options<'_>, pilots: &[Option<Trial>], ladders: &[Vec<u32>]) -> f64 {
+    let best = options.strategies.iter().zip(pilots).zip(ladders).filter_map(|((strategy, pilot), ladder)| {
         let pilot = pilot.as_ref()?.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
         Some(pilot.expected_rel_mse(*ladder.last()?))
     });
-    // A hundredth of the best row's error, with some room for the pilot's own noise; never below what f32 can hold.
-    let wanted = best.fold(1e-2, f64::min).max(1e-8) / 150.0;
-    let reference = Reference::compute(&target, wanted, options.cache, watch)?;
-    let mut comparison = Comparison {
-        target: &target,
-        reference: &reference,
-        options,
-        ladders: &ladders,
-        rows: Vec::new(),
-        films: HashMap::new(),
-    };
-    comparison.run(before, rows, watch)?;
+    best.fold(1e-2, f64::min).max(1e-8) / 150.0
+}
 
-    let mut summaries: Vec<Summary> = options
-        .strategies
-        .iter()
-        .zip(&pilots)
-        .enumerate()
-        .map(|(i, (strategy, pilot))| pilot.as_ref().map_or_else(|| blank(strategy), |p| comparison.summary(i, p)))
-        .collect();
-    let image = |index, run| comparison.films.get(&(index, run)).map(Vec::as_slice);
-    let images = |index| (0..options.repeats).filter_map(|run| image(index, run)).collect();
-    oracle::settle(&target, &reference.truth, options, images, &mut summaries, watch)?;
+fn summary(
+    strategy: &Configured,
+    pilot: Option<&Trial>,
+    ladder: &[u32],
+    runs: &Runs,
+    truth: &Truth,
+) -> (Summary, Jackknife) {
+    let mut begun = blank(strategy);
+    match pilot {
+        Some(Err(error)) => begun.error = Some(error.to_string()),
+        Some(Ok(pilot)) if ladder.is_empty() => {
+            begun.skipped = Some(format!("skipped: one pass is {:.2} s of counted work", pilot.work_s(1)));
+        }
+        Some(Ok(pilot)) => begun.counts = counts(pilot.counts),
+        None => {}
+    }
+    let (mut summary, jackknife) = summarise(begun, truth, runs, ladder);
+    if let Some(error) = runs.rows.iter().find_map(|row| row.error.clone()) {
+        summary.error = Some(error);
+    }
+    (summary, jackknife)
+}
+
+/// The chance that any one of all right strategies of a scene is found biased.
+const LEVEL: f64 = 0.01;
+
+/// Gives every unbiased row an interval of its bias that holds for all of them together; one whose interval is off 0 has
+/// failed.
+fn hold_to_claims(summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
+    let held = |s: &Summary| s.claim == Claim::Unbiased && s.error.is_none() && s.mean_bias.is_bounded();
+    let level = sidak(LEVEL, summaries.iter().filter(|s| held(s)).count());
+    for (summary, runs) in summaries.iter_mut().zip(runs).filter(|(summary, _)| held(summary)) {
+        let found = bias(truth, &runs.at(summary.passes), 1.0 - level);
+        summary.simultaneous_bias = found;
+        if !found.holds(0.0) {
+            let Interval { mean, low, high } = found.times(100.0);
+            summary.error = Some(format!(
+                "biased: the image's mean is off by {mean:+.3} % ({low:+.3} % to {high:+.3} %, simultaneous 99 % interval)"
+            ));
+        }
+    }
+}
+
+/// Work beyond the workers' clocks that is worth a word, as a share of what the process spent.
+const STRAY: f64 = 0.1;
+
+fn notes(stage: &Stage, stray: f64) -> Vec<String> {
     let mut notes = stage.scene().notes().to_vec();
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
@@ -107,14 +199,21 @@ pub fn compare<'a>(
     if left_out > 0 {
         notes.push(format!("{left_out} lights face away from every visible point and were left out"));
     }
-    let (scene, rows) = (record(&target, file, &reference, notes, summaries), comparison.rows);
-    Ok(Compared { scene, rows, truth: reference.truth, target })
+    if stray > STRAY {
+        notes.push(format!(
+            "{:.0} % of the CPU time of the runs was spent on threads that are on no strategy's clock: some strategy works \
+             behind its call",
+            100.0 * stray
+        ));
+    }
+    notes
 }
 
 fn record(
     target: &Target<'_>,
     file: &str,
     reference: &Reference,
+    headline: &Headline,
     notes: Vec<String>,
     summaries: Vec<Summary>,
 ) -> SceneRecord {
@@ -143,180 +242,40 @@ fn record(
             cached: reference.cached,
             subset: target.is_subset(),
         },
+        shared: Vec::new(),
+        errors: headline::ERRORS.to_vec(),
+        times_s: headline.times_s.clone(),
+        ranked_by: headline.ranked_by as u32,
         notes,
         summaries,
     }
 }
 
-/// One for each strategy; none for those that are not run against the clock.
-fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Result<Pilot>>>> {
-    let few = target.thinned(plan::RECEIVERS);
-    let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
-    watch.begin("checks and pilots", options.strategies.len() as u64);
-    let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
-    let mut pilots = Vec::new();
-    for strategy in options.strategies {
-        watch.check()?;
-        let pilot = || gate.pass(strategy).and_then(|()| Pilot::run(target, &rough, strategy, options.seed));
-        pilots.push((!oracle::is_oracle(strategy)).then(pilot));
-        watch.advance(1);
-    }
-    watch.end();
-    Ok(pilots)
+/// Rows and images of one scene in a result folder.
+struct Folder<'a> {
+    scene: &'a str,
+    films: Films,
+    before: &'a [Row],
+    rows: &'a mut RowWriter,
+    receivers: usize,
 }
 
-/// The budgets of a strategy: those of its finished runs where a comparison is resumed, or what its pilot says.
-fn ladder(
-    strategy: &Configured,
-    pilot: Option<&Pilot>,
-    stage: &Stage,
-    options: &Options<'_>,
-    before: &[Row],
-) -> Vec<u32> {
-    let finished = before.iter().filter(|row| row.scene == stage.scene().name() && row.strategy == strategy.name());
-    match (finished.map(|row| row.passes).max(), pilot) {
-        (Some(most), _) => (0..31).map(|rung| 1 << rung).take_while(|&passes| passes <= most).collect(),
-        (None, Some(pilot)) => pilot.ladder(options.budget, options.repeats),
-        (None, None) => Vec::new(),
-    }
-}
-
-/// The runs of one scene.
-struct Comparison<'a> {
-    target: &'a Target<'a>,
-    reference: &'a Reference,
-    options: &'a Options<'a>,
-    ladders: &'a [Vec<u32>],
-    rows: Vec<Row>,
-    /// The last image of each finished (strategy, run).
-    films: HashMap<(usize, u32), Vec<Vec3>>,
-}
-
-/// What a worker reports.
-enum Report {
-    Row(Row),
-    Finished { strategy: usize, run: u32, image: Vec<Vec3> },
-    Failed(Error),
-}
-
-impl Comparison<'_> {
-    fn run(&mut self, before: &[Row], writer: &mut RowWriter, watch: &dyn Observer) -> Result<()> {
-        let films = Films::of(self.options.folder);
-        let units = self.units(before, &films);
-        watch.begin("runs", units.len() as u64);
-        let next = AtomicUsize::new(0);
-        let (send, receive) = mpsc::channel();
-        let (this, units) = (&*self, &units);
-        let (new_rows, new_films) = std::thread::scope(|scope| {
-            for _ in 0..this.options.threads.clamp(1, units.len().max(1)) {
-                let (send, next) = (send.clone(), &next);
-                scope.spawn(move || {
-                    while let Some(&(strategy, run)) = units.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        if let Err(error) = this.unit(strategy, run, &send, watch) {
-                            // Nobody listens any more where the other end has failed first.
-                            let _ = send.send(Report::Failed(error));
-                            return;
-                        }
-                        watch.advance(1);
-                    }
-                });
-            }
-            drop(send);
-            let (mut rows, mut images) = (Vec::new(), Vec::new());
-            let mut first_failure = None;
-            for report in receive {
-                let stored = match report {
-                    Report::Row(row) => {
-                        let stored = writer.write(&row);
-                        rows.push(row);
-                        stored
-                    }
-                    Report::Finished { strategy, run, image } => {
-                        let stored = films.save(this.scene(), this.options.strategies[strategy].name(), run, &image);
-                        images.push(((strategy, run), image));
-                        stored
-                    }
-                    Report::Failed(error) => Err(error),
-                };
-                if let Err(error) = stored {
-                    first_failure.get_or_insert(error);
-                    next.store(units.len(), Ordering::Relaxed);
-                }
-            }
-            first_failure.map_or(Ok((rows, images)), Err)
-        })?;
-        watch.end();
-        self.rows.extend(new_rows);
-        self.films.extend(new_films);
-        Ok(())
-    }
-
-    fn scene(&self) -> &str {
-        self.target.stage.scene().name()
-    }
-
-    /// The (strategy, run) pairs still to do, in seeded random order; takes over what is finished.
-    fn units(&mut self, before: &[Row], films: &Films) -> Vec<(usize, u32)> {
-        let mut units = Vec::new();
-        for (i, strategy) in self.options.strategies.iter().enumerate() {
-            for run in 0..self.options.repeats {
-                let Some(&last) = self.ladders[i].last() else { continue };
-                let rows: Vec<&Row> = before
-                    .iter()
-                    .filter(|r| {
-                        r.scene == self.scene() && r.strategy == strategy.name() && r.run == run && r.error.is_none()
-                    })
-                    .collect();
-                let film = films.load(self.scene(), strategy.name(), run, self.target.places.len());
-                match film.filter(|_| rows.iter().any(|row| row.passes == last)) {
-                    Some(film) => {
-                        self.rows.extend(rows.into_iter().cloned());
-                        self.films.insert((i, run), film);
-                    }
-                    None => units.push((i, run)),
-                }
-            }
+impl Keep for Folder<'_> {
+    fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Option<Found> {
+        let is_it = |r: &&Row| (&*r.scene, &*r.strategy, r.run, r.passes) == (self.scene, strategy, run, passes);
+        let row = self.before.iter().find(is_it)?.clone();
+        if !with_image {
+            return Some((row, None));
         }
-        shuffle(&mut units, self.options.seed);
-        units
+        let image: Vec<Vec3> = self.films.load(self.scene, strategy, run, self.receivers)?;
+        Some((row, Some(image)))
     }
 
-    /// One independent run of one strategy through all its budgets, on this thread.
-    fn unit(&self, index: usize, run: u32, send: &mpsc::Sender<Report>, watch: &dyn Observer) -> Result<()> {
-        let key = RunKey { seed: self.options.seed, run };
-        let strategy = &self.options.strategies[index];
-        let once = Once { target: self.target, truth: &self.reference.truth, strategy, key };
-        let image = once.through(&self.ladders[index], |row| {
-            send.send(Report::Row(row)).map_err(|_| Error::Interrupted)?;
-            watch.check()
-        })?;
-        // A strategy that failed has its row and no image.
-        let Some(image) = image else { return Ok(()) };
-        send.send(Report::Finished { strategy: index, run, image }).map_err(|_| Error::Interrupted)
-    }
-
-    fn summary(&self, index: usize, pilot: &Result<Pilot>) -> Summary {
-        let strategy = &self.options.strategies[index];
-        let failed = |error: String| Summary { error: Some(error), ..blank(strategy) };
-        let pilot = match pilot {
-            Ok(pilot) => pilot,
-            Err(error) => return failed(error.to_string()),
-        };
-        let Some(&last) = self.ladders[index].last() else {
-            return Summary {
-                skipped: Some(format!("skipped: about {:.2} s a pass", pilot.first_pass_s())),
-                ..blank(strategy)
-            };
-        };
-        let mine = self.rows.iter().filter(|row| row.strategy == strategy.name());
-        if let Some(error) = mine.clone().find_map(|row| row.error.clone()) {
-            return failed(error);
+    fn keep(&mut self, (row, image): &Found) -> Result<()> {
+        // The image first: a row whose image is missing would have to be measured again.
+        if let Some(image) = image {
+            self.films.save(self.scene, &row.strategy, row.run, image)?;
         }
-        let mut rows: Vec<&Row> =
-            mine.filter(|row| row.passes == last && self.films.contains_key(&(index, row.run))).collect();
-        rows.sort_by_key(|row| row.run);
-        let images: Vec<&[Vec3]> = rows.iter().map(|row| self.films[&(index, row.run)].as_slice()).collect();
-        let blank = Summary { counts: counts(pilot.counts), ..blank(strategy) };
-        summarise(blank, &self.reference.truth, &rows, &images)
+        self.rows.write(row)
     }
 }

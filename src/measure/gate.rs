@@ -3,6 +3,7 @@
 //! A wrong one is not worth a figure: it may be fast because it is wrong. So each takes a short look at levels 0 and 1
 //! first, on the very scene it is to be measured on. `citylights verify` looks longer.
 
+use super::engine::Account;
 use crate::base::error::{Error, Result};
 use crate::base::statistics::sidak;
 use crate::strategy::registry::Configured;
@@ -33,5 +34,17 @@ impl<'a> Gate<'a> {
                 check.name, check.statistic, check.limit
             ))),
         }
+    }
+
+    /// An error if work of a strategy was on no clock of its own.
+    pub(super) fn charged(&self, _strategy: &Configured, account: Account) -> Result<()> {
+        let stray = account.process_s - account.threads_s;
+        if stray > 0.1 * account.threads_s + 5e-3 {
+            return Err(Error::Invalid(format!(
+                "failed check `charged`: {:.4} s on its clock, {:.4} s of the process",
+                account.threads_s, account.process_s
+            )));
+        }
+        Ok(())
     }
 }

@@ -7,17 +7,23 @@
 
 pub mod clock;
 pub mod compare;
+pub mod curve;
+pub mod engine;
 pub mod environment;
 pub mod errors;
+pub mod experiment;
+pub mod figure;
 pub mod films;
 mod gate;
+pub mod headline;
 pub mod inspect;
 pub mod observer;
-mod once;
 mod oracle;
 pub mod plan;
+mod ranking;
 pub mod reference;
+mod spread;
 pub mod summary;
 pub mod target;
 pub mod tiles;
-pub mod trials;
+pub mod work;

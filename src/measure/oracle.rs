@@ -1,150 +1,202 @@
 //! How far is each choice from the best one?
 //!
-//! The oracle casts every light's shadow ray before it chooses one. So it runs off the clock, on a few of the target's
+//! The oracle casts every light's shadow ray before it chooses one. So it runs off the clock, at some of the measured
 //! receivers, and the error of every other strategy at those same receivers is divided by its own. Both are errors per
 //! sample: relMSE times passes, after as many passes where that is affordable, since spread numbers make it fall.
+//!
+//! Receivers and runs are as many as the counted work allows, until the interval of the oracle's own error is narrow.
 
 use super::compare::Options;
 use super::errors::Truth;
+use super::experiment::Runs;
+use super::figure::{CONFIDENCE, Figure};
 use super::observer::Observer;
 use super::plan::PASSES;
-use super::summary::{blank, counts, interval};
+use super::summary::{blank, counts};
 use super::target::{self, Target};
 use crate::base::error::Result;
 use crate::base::random::RunKey;
-use crate::base::statistics::Moments;
-use crate::record::Summary;
+use crate::record::{Interval, Summary};
+use crate::render::counts::Counts;
+use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::AnySampler;
+use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
 use crate::strategy::registry::Configured;
 use crate::strategy::{BuildContext, Role};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Receivers that the oracle is run on.
-const RECEIVERS: usize = 256;
+/// Most receivers that an oracle is run on.
+const MOST_RECEIVERS: usize = 4_096;
 
-/// Its independent runs: with so many receivers four tell its error to a few percent.
-const RUNS: u32 = 4;
+/// Fewest receivers that say anything of the image.
+const FEWEST_RECEIVERS: usize = 64;
 
-/// Work is counted at every so many of its receivers.
+/// Independent runs are done so many at a time.
+const ROUND: u32 = 8;
+
+/// Most rounds.
+const ROUNDS: u32 = 8;
+
+/// Half the interval of its error, as a share of it, that is narrow enough.
+const NARROW: f64 = 0.08;
+
+/// Work is counted at so many receivers.
 const COUNTED: usize = 16;
 
-/// Most lights that it weighs on one scene, shadow rays and all: some ten seconds.
-const DEAREST: f64 = 1e8;
+/// Most lights that it weighs on one scene, shadow rays and all: some fifteen CPU seconds.
+const DEAREST: f64 = 6e7;
 
 /// Whether a strategy is run here and not against the clock.
 pub(super) fn is_oracle(strategy: &Configured) -> bool {
     strategy.info().role == Role::Oracle
 }
 
-/// Runs the oracles among the strategies, and gives every summary its ratio to the first of them. `images` are those of
-/// a strategy's runs after its last pass.
-pub(super) fn settle<'a>(
+/// Runs the oracles among the strategies, and gives every summary its ratio to the first of them.
+pub(super) fn settle(
     target: &Target<'_>,
     truth: &Truth,
     options: &Options<'_>,
-    images: impl Fn(usize) -> Vec<&'a [Vec3]>,
+    runs: &[Runs],
     summaries: &mut [Summary],
     watch: &dyn Observer,
 ) -> Result<()> {
-    let most = options.budget.usual_passes;
-    let places: Vec<usize> = target::places(target.places.len(), RECEIVERS).collect();
     let compared = |s: &Summary| s.chooses && s.runs > 0 && s.error.is_none();
-    let mut rungs: Vec<u32> = summaries.iter().filter(|s| compared(s)).map(|s| s.passes.min(most)).collect();
+    let mut rungs: Vec<u32> = summaries.iter().filter(|s| compared(s)).map(|s| s.passes).collect();
+    rungs.retain(|&passes| passes <= options.budget.usual_passes);
     rungs.sort_unstable();
     rungs.dedup();
-    let mut floor: Option<Vec<f64>> = None;
+    let mut floor: Option<Floor> = None;
     for (strategy, summary) in options.strategies.iter().zip(&mut *summaries).filter(|(one, _)| is_oracle(one)) {
-        watch.check()?;
-        watch.begin("oracle", 1);
-        let run = Run { target, truth, places: &places, rungs: &rungs, seed: options.seed };
-        let errors;
-        (*summary, errors) = run.summary(strategy);
-        floor = floor.or(errors);
-        watch.end();
+        let ground = Ground { target, truth, rungs: &rungs, seed: options.seed };
+        let found;
+        (*summary, found) = ground.summary(strategy, watch)?;
+        floor = floor.or(found);
     }
     let Some(floor) = floor else { return Ok(()) };
-    for (index, summary) in summaries.iter_mut().enumerate() {
-        let error = if is_oracle(&options.strategies[index]) {
-            summary.rel_mse.mean
-        } else if compared(summary) {
-            let images = images(index);
-            images.iter().map(|image| at(truth, &places, image)).sum::<f64>() / images.len() as f64
-        } else {
+    for ((strategy, summary), runs) in options.strategies.iter().zip(&mut *summaries).zip(runs) {
+        if is_oracle(strategy) && summary.runs > 0 {
+            summary.times_oracle = Some(Interval::certain(1.0));
+        }
+        if !compared(summary) || is_oracle(strategy) {
             continue;
-        };
+        }
         let Some(rung) = rungs.iter().rposition(|&rung| rung <= summary.passes) else { continue };
-        let ratio = error * f64::from(summary.passes) / (floor[rung] * f64::from(rungs[rung]));
+        let at = |image: &Vec<Vec3>| truth.rel_mse_at(&floor.places, floor.places.iter().map(|&i| image[i]));
+        let own = Figure::mean(runs.images.iter().map(at).collect());
+        let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
         // An exact oracle has no multiple, and an error below the reference's own noise none that means anything.
-        summary.times_oracle = Some(ratio).filter(|ratio| ratio.is_finite() && *ratio > 0.0);
+        summary.times_oracle = own.over(&floor.errors[rung], CONFIDENCE).map(|ratio| ratio.times(samples));
     }
     Ok(())
 }
 
-/// relMSE of an image of the whole target at some of its places.
-fn at(truth: &Truth, places: &[usize], image: &[Vec3]) -> f64 {
-    truth.rel_mse_at(places, places.iter().map(|&i| image[i]))
+/// What an oracle came to.
+struct Floor {
+    /// Where it was run, as places among the measured receivers.
+    places: Vec<usize>,
+    /// relMSE after each number of passes.
+    errors: Vec<Figure>,
 }
 
-/// The runs of one oracle.
-struct Run<'a> {
+/// What oracles are run on.
+struct Ground<'a> {
     target: &'a Target<'a>,
     truth: &'a Truth,
-    places: &'a [usize],
+    /// Numbers of passes, ascending.
     rungs: &'a [u32],
     seed: u64,
 }
 
-impl Run<'_> {
-    /// Its summary, and its relMSE after each number of passes if it could be run.
-    fn summary(&self, strategy: &Configured) -> (Summary, Option<Vec<f64>>) {
+impl Ground<'_> {
+    /// Its summary, and its errors if it could be run.
+    fn summary(&self, strategy: &Configured, watch: &dyn Observer) -> Result<(Summary, Option<Floor>)> {
         let blank = blank(strategy);
         let Some(&passes) = self.rungs.last() else {
-            return (Summary { skipped: Some("skipped: nothing to compare it with".into()), ..blank }, None);
+            return Ok((Summary { skipped: Some("skipped: nothing to compare it with".into()), ..blank }, None));
         };
         let sampler = match strategy.build(BuildContext { stage: self.target.stage, seed: self.seed }) {
             Ok(sampler) => sampler,
-            Err(error) => return (Summary { error: Some(error.to_string()), ..blank }, None),
+            Err(error) => return Ok((Summary { error: Some(error.to_string()), ..blank }, None)),
         };
         let measured = self.target.measured();
-        let receivers: Vec<Receiver> = self.places.iter().map(|&i| measured[i]).collect();
-        let few: Vec<Receiver> = receivers.iter().step_by(COUNTED).copied().collect();
-        let key = RunKey { seed: self.seed, run: RUNS };
-        let plan = Plan { stage: self.target.stage, receivers: &few, sampler: &*sampler, key };
-        let work = plan.run_counting(PASSES, &mut Film::new(few.len()));
-        let arrivals = receivers.len() as f64 * f64::from(RUNS) * self.rungs.len() as f64;
-        let all = work.work.weighed as f64 / few.len().max(1) as f64 * arrivals;
-        if all > DEAREST {
+        let work = self.count(&*sampler, &measured);
+        let an_arrival = (work.work.weighed as f64 / COUNTED.min(measured.len()).max(1) as f64).max(1.0);
+        let affordable = (DEAREST / (f64::from(ROUND) * an_arrival)) as usize;
+        if affordable < FEWEST_RECEIVERS.min(measured.len()) {
+            let all = an_arrival * f64::from(ROUND) * FEWEST_RECEIVERS as f64;
             let skipped = Some(format!("skipped: it would weigh lights {all:.0e} times, {DEAREST:.0e} at most"));
-            return (Summary { skipped, ..blank }, None);
+            return Ok((Summary { skipped, ..blank }, None));
         }
-        let runs: Vec<Vec<f64>> =
-            (0..RUNS).into_par_iter().map(|run| self.errors(&*sampler, &receivers, run)).collect();
-        let errors = |rung: usize| Moments::of(runs.iter().map(move |errors| errors[rung]));
+        let places: Vec<usize> = target::places(measured.len(), affordable.min(MOST_RECEIVERS)).collect();
+        let receivers: Vec<Receiver> = places.iter().map(|&i| measured[i]).collect();
+        let rounds = (affordable / receivers.len().max(1)).clamp(1, ROUNDS as usize) as u32;
+        watch.begin("oracle", u64::from(rounds * ROUND));
+        let mut runs: Vec<Vec<f64>> = Vec::new();
+        let errors = loop {
+            let first = runs.len() as u32;
+            let more = (first..first + ROUND).into_par_iter().map(|run| {
+                watch.check()?;
+                let errors = self.errors(&*sampler, &receivers, &places, run);
+                watch.advance(1);
+                Ok(errors)
+            });
+            runs.extend(more.collect::<Result<Vec<_>>>()?);
+            let errors: Vec<Figure> = (0..self.rungs.len())
+                .map(|rung| Figure::mean(runs.iter().map(|errors| errors[rung]).collect()))
+                .collect();
+            let narrow = |figure: &Figure| figure.interval().half_width() <= NARROW * figure.estimate.abs();
+            if errors.iter().all(narrow) || runs.len() as u32 >= rounds * ROUND {
+                break errors;
+            }
+        };
+        watch.end();
         let summary = Summary {
-            runs: RUNS,
+            runs: runs.len() as u32,
             passes,
             receivers: Some(receivers.len() as u64),
-            rel_mse: interval(errors(self.rungs.len() - 1)),
+            rel_mse: errors[self.rungs.len() - 1].interval(),
             heap_bytes: sampler.heap_bytes() as u64,
             counts: counts(work),
             ..blank
         };
-        (summary, Some((0..self.rungs.len()).map(|rung| errors(rung).mean).collect()))
+        Ok((summary, Some(Floor { places, errors })))
     }
 
-    /// relMSE after each number of passes.
-    fn errors(&self, sampler: &dyn AnySampler, receivers: &[Receiver], run: u32) -> Vec<f64> {
+    /// Work of a few arrivals, over as many passes as every strategy's is counted.
+    fn count(&self, sampler: &dyn AnySampler, measured: &[Receiver]) -> Counts {
+        let few: Vec<Receiver> = target::places(measured.len(), COUNTED).map(|i| measured[i]).collect();
+        let key = RunKey { seed: !self.seed, run: 0 };
+        Plan { stage: self.target.stage, receivers: &few, sampler, key }.run_counting(PASSES, &mut Film::new(few.len()))
+    }
+
+    /// relMSE of a run after each number of passes. Each receiver is arrived at once, and its passes shaded one by one.
+    fn errors(&self, sampler: &dyn AnySampler, receivers: &[Receiver], places: &[usize], run: u32) -> Vec<f64> {
+        let stage = self.target.stage;
         let key = RunKey { seed: self.seed, run };
-        let plan = Plan { stage: self.target.stage, receivers, sampler, key };
-        let mut film = Film::new(receivers.len());
-        let errors = self.rungs.iter().map(|&passes| {
-            plan.run(passes - film.passes(), &mut film);
-            self.truth.rel_mse_at(self.places, film.image().into_iter())
-        });
-        errors.collect()
+        let most = self.rungs.last().copied().unwrap_or(0);
+        let mut images = vec![vec![Vec3::ZERO; receivers.len()]; self.rungs.len()];
+        let mut sums = vec![DVec3::ZERO; receivers.len()];
+        let (mut picks, mut rays) = (PickBuffer::default(), 0);
+        for block in blocks(sampler, 0..most) {
+            let begun = sampler.begin(Frame::new(receivers, key), block.clone());
+            let mut worker = begun.worker(false);
+            for (i, at) in receivers.iter().enumerate() {
+                worker.fill(std::slice::from_ref(at), block.clone(), true, &mut picks);
+                for (pass, call) in (block.start + 1..).zip(picks.calls()) {
+                    for pick in call {
+                        let light = &stage.scene().lights()[pick.light as usize];
+                        sums[i] += shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut rays)
+                            * f64::from(pick.weight);
+                    }
+                    if let Some(rung) = self.rungs.iter().position(|&rung| rung == pass) {
+                        images[rung][i] = (sums[i] / f64::from(pass)).as_vec3();
+                    }
+                }
+            }
+        }
+        images.into_iter().map(|image| self.truth.rel_mse_at(places, image.into_iter())).collect()
     }
 }

@@ -1,11 +1,14 @@
-//! How far can each strategy go within its budget?
+//! How far does each strategy go?
 //!
-//! A pilot on a few receivers times one pass, counts its work and guesses its error; budgets then double from one pass
-//! up to the last that fits. The guess says how good the reference must be.
+//! Budgets are the same numbers of passes for all strategies: 1, 4, 16 and so on. A pilot on a few receivers counts a
+//! strategy's work; it goes as far as its [nominal seconds](super::work) allow. Nothing here depends on how fast the
+//! machine is: the same seed gives the same budgets everywhere. The pilot also guesses the error, which says how good
+//! the reference must be.
 
-use super::clock::timed;
+use super::engine::{Account, Meter};
 use super::errors::Truth;
-use super::target::Target;
+use super::target::{self, Target};
+use super::work::nominal_s;
 use crate::base::colour::luminance;
 use crate::base::draws::Points;
 use crate::base::error::Result;
@@ -25,16 +28,23 @@ pub struct Budget {
     pub usual_passes: u32,
     /// Most passes, if they do not.
     pub most_passes: u32,
-    /// Most CPU seconds of sampling.
-    pub seconds: f64,
+    /// Most nominal seconds of sampling.
+    pub work_s: f64,
+}
+
+impl Budget {
+    /// Up to `passes` and no more.
+    pub fn up_to(passes: u32, work_s: f64) -> Self {
+        Self { usual_passes: passes, most_passes: passes, work_s }
+    }
 }
 
 /// What a pilot found.
 #[derive(Clone, Debug)]
 pub struct Pilot {
-    /// Expected CPU seconds of coming to every receiver once, whatever the number of passes.
+    /// Nominal seconds of coming to every receiver of the frame once, whatever the number of passes.
     arrive_s: f64,
-    /// Expected CPU seconds of a pass over all receivers.
+    /// Nominal seconds of a pass over the frame.
     pass_s: f64,
     /// relMSE that more passes take away, times passes.
     variance: f64,
@@ -46,10 +56,19 @@ pub struct Pilot {
     energy_variance: f64,
     /// What became of the samples.
     pub counts: Counts,
+    /// What it took, on the strategy's clock and on the process's.
+    pub account: Account,
 }
 
-/// Receivers of a pilot.
+/// Receivers of a pilot's errors.
 pub(super) const RECEIVERS: usize = 512;
+
+/// Work is counted at so many squares of the frame, of [`SQUARE`] neighbours each: a strategy may share what it does
+/// among neighbours.
+const SQUARES: usize = 16;
+
+/// Neighbours of a square. Receivers follow squares of 8 x 8 pixels.
+const SQUARE: usize = 64;
 
 /// A bias of the image's mean that runs should be able to see.
 pub const DETECTABLE: f64 = 0.05;
@@ -58,36 +77,35 @@ pub const DETECTABLE: f64 = 0.05;
 pub(super) const PASSES: u32 = 4;
 
 impl Pilot {
-    /// Tries a strategy on `RECEIVERS` of the target's receivers, with their truth.
+    /// Tries a strategy on a few of the target's receivers, with their truth: that of `target.thinned(RECEIVERS)`.
     ///
     /// One that draws state for a pass or looks at its whole frame gets the whole frame: on a few receivers that cost
     /// would be out of proportion, and neighbours too far apart to be any.
-    pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64) -> Result<Self> {
+    pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64, meter: Meter<'_>) -> Result<Self> {
+        let (found, account) = meter.audit(|| Self::tried(target, truth, strategy, seed));
+        Ok(Self { account, ..found? })
+    }
+
+    fn tried(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64) -> Result<Self> {
         let sampler = strategy.build(BuildContext { stage: target.stage, seed })?;
-        let all = target.frame.len();
-        let Target { places, .. } = target.thinned(RECEIVERS);
-        let few: Vec<Receiver> = places.iter().map(|&i| target.frame[i]).collect();
+        let frame = &target.frame;
+        let places = target.thinned(RECEIVERS).places;
         let whole = sampler.most_passes() == 1;
-        let frame: &[Receiver] = if whole { &target.frame } else { &few };
-        let plan = |run| Plan {
+        let few: Vec<Receiver> = places.iter().map(|&i| frame[i]).collect();
+        let plan = |receivers, run| Plan {
             stage: target.stage,
-            receivers: frame,
+            receivers,
             sampler: sampler.as_ref(),
             key: RunKey { seed: !seed, run },
         };
-        let film = |run, passes| {
-            let mut film = Film::new(frame.len());
-            let ((), spent) = timed(|| plan(run).run(passes, &mut film));
+        let image = |run| -> Vec<Vec3> {
+            let receivers: &[Receiver] = if whole { frame } else { &few };
+            let mut film = Film::new(receivers.len());
+            plan(receivers, run).run(PASSES, &mut film);
             let image = film.image();
-            let image: Vec<Vec3> = if whole { places.iter().map(|&i| image[i]).collect() } else { image };
-            (image, spent.cpu)
+            if whole { places.iter().map(|&i| image[i]).collect() } else { image }
         };
-        let scale = all as f64 / frame.len().max(1) as f64;
-        film(0, 1); // Warms the caches.
-        let one = film(0, 1).1 * scale;
-        let (first, several) = film(1, PASSES);
-        let (second, _) = film(2, PASSES);
-        let pass_s = ((several * scale - one) / f64::from(PASSES - 1)).max(0.0);
+        let (first, second) = (image(1), image(2));
         let errors = truth.errors(&first).rel_mse;
         let both = |i: usize| {
             let r = truth.mean()[i].as_dvec3();
@@ -98,43 +116,45 @@ impl Pilot {
         let energy = mean(&|i| f64::from(luminance(truth.mean()[i])));
         let of_pixel = f64::from(PASSES) * mean(&|i| f64::from(luminance(first[i] - second[i])).powi(2) / 2.0);
         // Receivers are independent of one another: their mean has an n-th of their variance.
-        let energy_variance = if energy > 0.0 { of_pixel / (all as f64 * energy * energy) } else { 0.0 };
-        let counts = plan(3).run_counting(PASSES, &mut Film::new(frame.len()));
+        let measured = target.places.len().max(1) as f64;
+        let energy_variance = if energy > 0.0 { of_pixel / (measured * energy * energy) } else { 0.0 };
+        let counted = if whole { frame.to_vec() } else { squares(frame) };
+        let count = |passes| plan(&counted, 3).run_counting(passes, &mut Film::new(counted.len()));
+        let scale = frame.len() as f64 / counted.len().max(1) as f64;
+        let counts = count(PASSES);
+        // State of one pass is drawn anew for each, and so is every arrival.
+        let (arrive_s, pass_s) = if whole {
+            (0.0, nominal_s(&counts) * scale / f64::from(PASSES))
+        } else {
+            let one = nominal_s(&count(1)) * scale;
+            let pass_s = ((nominal_s(&counts) * scale - one) / f64::from(PASSES - 1)).max(0.0);
+            ((one - pass_s).max(0.0), pass_s)
+        };
         Ok(Self {
-            arrive_s: (one - pass_s).max(0.0),
+            arrive_s,
             pass_s,
             variance: (errors - bias2).max(0.0) * f64::from(PASSES),
             bias2,
             spread: strategy.points() != Points::Random,
             energy_variance,
             counts,
+            account: Account::default(),
         })
     }
 
-    /// The budgets that fit, in passes: 1, 2, 4 and so on; none if one pass is too long.
+    /// The budgets that fit, in passes: 1, 4, 16 and so on; none if one pass is too much work.
     pub fn ladder(&self, budget: Budget, runs: u32) -> Vec<u32> {
         // 3 standard errors: Student's 97.5 % and 80 % points at 15 degrees of freedom; four times the variance, since
         // a pilot mostly misses the rare bright picks.
         let certain = 4.0 * self.energy_variance * (3.0 / DETECTABLE).powi(2) / f64::from(runs);
-        let certain = (certain.min(1e9) as u32).next_power_of_two();
-        let passes = certain.clamp(budget.usual_passes, budget.most_passes);
-        let seconds = |rung: u32| f64::from(rung + 1) * self.arrive_s + f64::from(1u32 << rung) * self.pass_s;
-        (0..31)
-            .take_while(|&rung| 1 << rung <= passes && seconds(rung) <= budget.seconds)
-            .map(|rung| 1 << rung)
-            .collect()
+        let certain = budgets(1 << 30).find(|&passes| f64::from(passes) >= certain).unwrap_or(1 << 30);
+        let most = certain.clamp(budget.usual_passes, budget.most_passes);
+        budgets(most).take_while(|&passes| self.work_s(passes) <= budget.work_s).collect()
     }
 
-    /// The most passes, a power of two and no more than usual, that fit where they are done in one block.
-    pub fn at_once(&self, budget: Budget) -> Option<u32> {
-        let seconds = |passes: u32| self.arrive_s + f64::from(passes) * self.pass_s;
-        let powers = (0..31).map(|power| 1 << power);
-        powers.take_while(|&passes| passes <= budget.usual_passes && seconds(passes) <= budget.seconds).last()
-    }
-
-    /// Expected CPU seconds of the first pass.
-    pub fn first_pass_s(&self) -> f64 {
-        self.arrive_s + self.pass_s
+    /// Nominal seconds of so many passes in one block.
+    pub fn work_s(&self, passes: u32) -> f64 {
+        self.arrive_s + f64::from(passes) * self.pass_s
     }
 
     /// Least relMSE that is to be expected after so many passes: it says how good a reference must be.
@@ -149,12 +169,27 @@ impl Pilot {
     }
 }
 
+/// The budgets of every plan up to `most` passes: powers of 4, and `most` itself where it is none.
+pub fn budgets(most: u32) -> impl Iterator<Item = u32> {
+    let powers = (0..16).map(|power| 1u32 << (2 * power)).take_while(move |&passes| passes < most);
+    powers.chain((most > 0).then_some(most))
+}
+
+/// Squares of neighbouring receivers, spread over a frame.
+fn squares(frame: &[Receiver]) -> Vec<Receiver> {
+    if frame.len() <= SQUARES * SQUARE {
+        return frame.to_vec();
+    }
+    let begins = target::places(frame.len() / SQUARE, SQUARES);
+    begins.flat_map(|square| frame[square * SQUARE..][..SQUARE].iter().copied()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn ladders_double_within_passes_and_seconds() {
+    fn budgets_grow_fourfold_within_passes_and_work() {
         let pilot = Pilot {
             arrive_s: 0.1,
             pass_s: 0.1,
@@ -163,20 +198,18 @@ mod tests {
             spread: false,
             energy_variance: 0.0,
             counts: Counts::default(),
+            account: Account::default(),
         };
-        assert_eq!(pilot.ladder(Budget { usual_passes: 20, most_passes: 20, seconds: 100.0 }, 16), [1, 2, 4, 8, 16]);
-        // 8 passes in 4 blocks take 0.4 + 0.8 s.
-        assert_eq!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 1.25 }, 16), [1, 2, 4, 8]);
-        assert!(pilot.ladder(Budget { usual_passes: 64, most_passes: 64, seconds: 0.1 }, 16).is_empty());
+        assert_eq!(pilot.ladder(Budget::up_to(64, 100.0), 16), [1, 4, 16, 64]);
+        assert_eq!(pilot.ladder(Budget::up_to(20, 100.0), 16), [1, 4, 16, 20]);
+        // 16 passes in one block are 0.1 + 1.6 s.
+        assert_eq!(pilot.ladder(Budget::up_to(64, 1.71), 16), [1, 4, 16]);
+        assert_eq!(pilot.ladder(Budget::up_to(64, 1.69), 16), [1, 4]);
+        assert!(pilot.ladder(Budget::up_to(64, 0.1), 16).is_empty());
         // A relative variance of 0.225 a pass, with 16 runs: 4 * 0.225 * 3600 / 16 = 202 passes are needed.
         let noisy = Pilot { arrive_s: 0.0, pass_s: 1e-3, energy_variance: 0.225, ..pilot };
-        assert_eq!(
-            noisy.ladder(Budget { usual_passes: 64, most_passes: 1 << 20, seconds: 1.0 }, 16).last(),
-            Some(&256)
-        );
-        assert_eq!(
-            noisy.ladder(Budget { usual_passes: 64, most_passes: 1 << 20, seconds: 0.15 }, 16).last(),
-            Some(&128)
-        );
+        let budget = Budget { usual_passes: 64, most_passes: 1 << 20, work_s: 1.0 };
+        assert_eq!(noisy.ladder(budget, 16).last(), Some(&256));
+        assert_eq!(noisy.ladder(Budget { work_s: 0.15, ..budget }, 16).last(), Some(&64));
     }
 }

@@ -1,15 +1,14 @@
 //! What do all runs of a strategy say together?
 
 use super::errors::Truth;
+use super::experiment::Runs;
+use super::figure::{CONFIDENCE, Figure};
+use super::spread::{Parts, Spread};
 use crate::base::statistics::Moments;
-use crate::record::{Claim, Counts, Interval, Row, Summary};
+use crate::record::{Claim, Counts, Interval, Point, Row, Summary};
 use crate::render::counts as render;
 use crate::strategy::registry::Configured;
 use crate::strategy::{Claim as StrategyClaim, Role};
-use glam::{DVec3, Vec3};
-
-/// Confidence of every interval.
-pub const CONFIDENCE: f64 = 0.95;
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub fn blank(strategy: &Configured) -> Summary {
@@ -24,33 +23,111 @@ pub fn blank(strategy: &Configured) -> Summary {
     Summary::blank(strategy.name().to_owned(), claim, info.role == Role::Choosing)
 }
 
-/// A summary with the figures of the rows and images of its runs at the largest budget, in the same order.
-pub fn summarise(mut summary: Summary, truth: &Truth, rows: &[&Row], images: &[&[Vec3]]) -> Summary {
-    if rows.is_empty() {
-        return summary;
+/// Bias and variance of a strategy's runs at its largest budget: from all of them, and without each in turn.
+pub struct Jackknife {
+    all: Parts,
+    without: Vec<Parts>,
+}
+
+impl Jackknife {
+    /// Of the images of a strategy's runs.
+    fn of(truth: &Truth, runs: &Runs) -> Self {
+        let spread = Spread::of(truth, &runs.images);
+        let without = (0..runs.images.len()).map(|run| spread.parts(Some(run))).collect();
+        Self { all: spread.parts(None), without }
     }
-    let moments = |value: fn(&Row) -> f64| Moments::of(rows.iter().map(move |row| value(row)));
-    let interval = |value: fn(&Row) -> f64| interval(moments(value));
-    summary.runs = rows.len() as u32;
-    summary.passes = rows[0].passes;
-    summary.setup_cpu_s = moments(|r| r.setup_cpu_s).mean;
-    summary.cpu_s = moments(|r| r.cpu_s).mean;
-    summary.wall_s = moments(|r| r.wall_s).mean;
-    summary.heap_bytes = rows.iter().map(|r| r.heap_bytes).max().unwrap_or(0);
-    summary.rel_mse = interval(|r| r.rel_mse);
-    summary.mse = interval(|r| r.mse);
-    summary.rel_mse_trimmed = interval(|r| r.rel_mse_trimmed);
-    let energy = moments(|r| r.energy_ratio);
-    let own = truth.own_energy_error();
+
+    fn parts(&self, without: Option<usize>) -> Parts {
+        without.map_or(self.all, |run| self.without[run])
+    }
+
+    /// Squared bias as far as a claim lets it count: 0 of what claims to have none, never negative, NaN where it is not
+    /// known.
+    pub fn counted_bias2(&self, claim: &Claim, without: Option<usize>) -> f64 {
+        if !claim.may_be_biased() {
+            return 0.0;
+        }
+        let bias2 = self.parts(without).bias2;
+        // `max` would turn NaN, a bias not known, into 0.
+        if bias2.is_nan() { bias2 } else { bias2.max(0.0) }
+    }
+}
+
+/// A summary with the figures of a strategy's runs, but for what depends on the other rows; and its bias for what does.
+pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32]) -> (Summary, Jackknife) {
+    let jackknife = Jackknife::of(truth, runs);
+    let Some(last) = ladder.last().map(|&passes| runs.at(passes)).filter(|rows| !rows.is_empty()) else {
+        return (summary, jackknife);
+    };
+    let values = |value: fn(&Row) -> f64| last.iter().map(|row| value(row)).collect::<Vec<f64>>();
+    let mean = |value: fn(&Row) -> f64| Figure::mean(values(value)).interval();
+    summary.runs = last.len() as u32;
+    summary.passes = last[0].passes;
+    summary.curve = ladder.iter().filter_map(|&passes| point(passes, &runs.at(passes))).collect();
+    summary.setup_cpu_s =
+        Figure::mean(runs.rows.iter().filter(|r| r.error.is_none()).map(|r| r.setup_cpu_s).collect()).interval();
+    [summary.arrival_cpu_s, summary.pass_cpu_s] = cost(runs, ladder);
+    summary.cpu_s = mean(|r| r.cpu_s);
+    summary.wall_s = Moments::of(values(|r| r.wall_s)).mean;
+    summary.heap_bytes = last.iter().map(|r| r.heap_bytes).max().unwrap_or(0);
+    summary.rel_mse = mean(|r| r.rel_mse);
+    summary.mse = mean(|r| r.mse);
+    summary.rel_mse_trimmed = mean(|r| r.rel_mse_trimmed);
+    summary.mean_bias = bias(truth, &last, CONFIDENCE);
+    summary.detectable_bias =
+        Moments::of(values(|r| r.energy_ratio)).detectable(1.0 - CONFIDENCE).hypot(2.8 * truth.own_energy_error());
+    let k = runs.images.len();
+    if k == last.len() && k > 2 {
+        summary.rel_bias2 = Figure::jackknife(k, false, |run| jackknife.parts(run).bias2).interval();
+        let cpu_s = |without: Option<usize>| {
+            let kept = last.iter().enumerate().filter(|(run, _)| Some(*run) != without);
+            kept.map(|(_, row)| row.cpu_s).sum::<f64>() / (k - usize::from(without.is_some())) as f64
+        };
+        let v = |without| jackknife.parts(without).variance * cpu_s(without);
+        summary.variance_seconds =
+            if v(None) > 0.0 { Figure::jackknife(k, true, v).interval() } else { Interval::certain(v(None)) };
+        if summary.claim.may_be_biased() {
+            // A b^2 that may be 0 gives a t* that may be anything.
+            let seen = summary.rel_bias2.low > 0.0 && v(None) > 0.0;
+            let balance = |without| v(without) / jackknife.parts(without).bias2;
+            summary.balance_s = Some(if seen {
+                Figure::jackknife(k, true, balance).interval()
+            } else {
+                Interval { mean: f64::INFINITY, low: summary.cpu_s.mean, high: f64::INFINITY }
+            });
+        }
+    }
+    summary.unstable = unstable(&last);
+    (summary, jackknife)
+}
+
+/// The bias of the image's mean, as a share of it, with an interval at a confidence within (0, 1).
+pub fn bias(truth: &Truth, rows: &[&Row], confidence: f64) -> Interval {
+    let figure = Figure::mean(rows.iter().map(|row| row.energy_ratio - 1.0).collect());
+    let (low, high) = figure.bounds(confidence);
     // The reference's own error does not go away with more runs.
-    summary.mean_bias =
-        Interval { mean: energy.mean - 1.0, half_width: energy.half_width(CONFIDENCE).hypot(2.0 * own) };
-    summary.detectable_bias = energy.detectable(1.0 - CONFIDENCE).hypot(2.8 * own);
-    let spread = Spread::of(truth, images);
-    summary.rel_bias2 = spread.rel_bias2();
-    summary.variance_seconds = spread.rel_variance() * summary.cpu_s;
-    summary.unstable = unstable(rows);
-    summary
+    let own = crate::base::statistics::normal_quantile(0.5 + 0.5 * confidence) * truth.own_energy_error();
+    let mean = figure.estimate;
+    Interval { mean, low: mean - (mean - low).hypot(own), high: mean + (high - mean).hypot(own) }
+}
+
+fn point(passes: u32, rows: &[&Row]) -> Option<Point> {
+    let mean = |value: fn(&Row) -> f64| Figure::mean(rows.iter().map(|row| value(row)).collect()).interval();
+    (!rows.is_empty()).then(|| Point { passes, cpu_s: mean(|r| r.setup_cpu_s + r.cpu_s), rel_mse: mean(|r| r.rel_mse) })
+}
+
+/// CPU seconds of arrival and of a pass: of the smallest and the largest budget, run by run; unknown from one budget.
+fn cost(runs: &Runs, ladder: &[u32]) -> [Interval; 2] {
+    let [Some(&first), Some(&last)] = [ladder.first(), ladder.last()] else { return [Interval::NONE; 2] };
+    if first == last {
+        return [Interval::NONE; 2];
+    }
+    let (few, many) = (runs.at(first), runs.at(last));
+    let pass = |few: &Row, many: &Row| (many.cpu_s - few.cpu_s) / f64::from(last - first);
+    let pairs = || few.iter().zip(&many);
+    let passes = pairs().map(|(few, many)| pass(few, many)).collect();
+    let arrivals = pairs().map(|(few, many)| few.cpu_s - f64::from(first) * pass(few, many)).collect();
+    [Figure::mean(arrivals).interval(), Figure::mean(passes).interval()]
 }
 
 /// Counts as they are recorded.
@@ -70,92 +147,9 @@ pub(super) fn counts(found: render::Counts) -> Counts {
     }
 }
 
-pub(super) fn interval(moments: Moments) -> Interval {
-    Interval { mean: moments.mean, half_width: moments.half_width(CONFIDENCE) }
-}
-
 /// Whether the two halves of the runs differ by more than their intervals.
 fn unstable(rows: &[&Row]) -> bool {
     let (first, second) = rows.split_at(rows.len() / 2);
-    let [a, b] = [first, second].map(|half| interval(Moments::of(half.iter().map(|row| row.rel_mse))));
-    first.len() > 1 && (a.mean - b.mean).abs() > a.half_width + b.half_width
-}
-
-/// Runs taken apart into what they share (bias) and in what they differ (variance).
-struct Spread<'a> {
-    truth: &'a Truth,
-    images: &'a [&'a [Vec3]],
-    sums: Vec<DVec3>,
-    squares: Vec<DVec3>,
-}
-
-impl<'a> Spread<'a> {
-    fn of(truth: &'a Truth, images: &'a [&'a [Vec3]]) -> Self {
-        let n = truth.mean().len();
-        let add = |value: fn(DVec3) -> DVec3| {
-            (0..n).map(|i| images.iter().fold(DVec3::ZERO, |sum, image| sum + value(image[i].as_dvec3()))).collect()
-        };
-        Self { truth, images, sums: add(|x| x), squares: add(|x| x * x) }
-    }
-
-    /// Variance of a pixel over `k` runs with these sums.
-    fn variance(sum: DVec3, square: DVec3, k: f64) -> DVec3 {
-        ((square - sum * sum / k) / (k - 1.0)).max(DVec3::ZERO)
-    }
-
-    /// Mean variance of one run, in units of relMSE; NaN of one run.
-    fn rel_variance(&self) -> f64 {
-        let k = self.images.len() as f64;
-        if k < 2.0 {
-            return f64::NAN;
-        }
-        self.truth.mean_over(|i| Self::variance(self.sums[i], self.squares[i], k) * self.truth.weight(i))
-    }
-
-    /// Squared bias in units of relMSE: mean over pixels of (mean of runs - truth)^2 less the variance of that mean,
-    /// with a jackknife interval over runs.
-    fn rel_bias2(&self) -> Interval {
-        let k = self.images.len();
-        if k < 3 {
-            return Interval { mean: f64::NAN, half_width: f64::INFINITY };
-        }
-        let bias2 = |left_out: Option<&&[Vec3]>| {
-            let k = if left_out.is_some() { k - 1 } else { k } as f64;
-            self.truth.mean_over(|i| {
-                let out = left_out.map_or(DVec3::ZERO, |image| image[i].as_dvec3());
-                let (sum, square) = (self.sums[i] - out, self.squares[i] - out * out);
-                (self.truth.product(i, sum / k) - Self::variance(sum, square, k) / k) * self.truth.weight(i)
-            })
-        };
-        let all = bias2(None);
-        let pseudo: Vec<f64> =
-            self.images.iter().map(|image| k as f64 * all - (k - 1) as f64 * bias2(Some(image))).collect();
-        Interval { mean: all, half_width: Moments::of(pseudo.iter().copied()).half_width(CONFIDENCE) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::base::random::Stream;
-
-    #[test]
-    fn bias_and_variance_of_known_runs_are_told_apart() {
-        let (n, k) = (4_000, 16);
-        let truth = Truth::new([vec![Vec3::ONE; n], vec![Vec3::ONE; n]]);
-        let images: Vec<Vec<Vec3>> = (0..k)
-            .map(|run| {
-                let mut rng = Stream::keyed(&[run]);
-                // Bias -0.2, uniform noise of width 1: variance 1/12.
-                (0..n).map(|_| Vec3::splat(0.8 + rng.uniform() - 0.5)).collect()
-            })
-            .collect();
-        let images: Vec<&[Vec3]> = images.iter().map(Vec::as_slice).collect();
-        let spread = Spread::of(&truth, &images);
-        let bias2 = spread.rel_bias2();
-        assert!((bias2.mean * 1.01 - 0.04).abs() < bias2.half_width * 1.5, "{bias2:?}");
-        assert!(bias2.half_width < 0.004, "{bias2:?}");
-        assert!((spread.rel_variance() * 1.01 * 12.0 - 1.0).abs() < 0.02, "{}", spread.rel_variance());
-        assert!(Spread::of(&truth, &images[..1]).rel_variance().is_nan(), "one run knows nothing of variance");
-    }
+    let [a, b] = [first, second].map(|half| Figure::mean(half.iter().map(|row| row.rel_mse).collect()).interval());
+    first.len() > 1 && (a.low > b.high || b.low > a.high)
 }

@@ -15,10 +15,10 @@ pub mod study;
 pub mod study_store;
 pub mod summary;
 
+pub use interval::Interval;
 pub use row::Row;
 pub use run::{Machine, RunRecord};
 pub use scene::{ReferenceRecord, SceneRecord, SharedWork};
-pub use interval::Interval;
 pub use summary::{Claim, Counts, Point, Read, Reading, Summary};
 
 /// Version of the files' layout; files of another version are refused, never guessed at.
