@@ -1,5 +1,5 @@
 //! One engine times everything, plans do not follow the machine, and whatever a unit starts is on its clock.
-#![cfg(feature = "cli")]
+#![cfg(feature = "measure")]
 
 mod common;
 
