@@ -35,14 +35,16 @@ pub(super) struct Arguments {
     /// (`offsets`)
     #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     receivers: u32,
-    /// Receivers that errors are taken over
-    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
-    pixels: u32,
-    /// Passes of a run
+    /// Receivers of the frame that errors are taken at: by default 512, fewer among 100,000 lights and more, and of
+    /// `scaling` more
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pixels: Option<u32>,
+    /// Most passes of a run
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     passes: u32,
-    /// Most CPU seconds of a strategy in a run: one that cannot do all passes in them does fewer
-    #[arg(long, value_name = "S", default_value = "2", value_parser = seconds)]
+    /// Most counted work of a strategy in a run, in seconds at the committed rates: the same on every machine. One that
+    /// cannot do all passes in them does fewer: 1, 4, 16 and so on
+    #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     seconds: f64,
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
@@ -94,7 +96,7 @@ fn options(arguments: &Arguments) -> Options {
         overrides,
         strategies: arguments.strategies.clone(),
         receivers: arguments.receivers as usize,
-        pixels: arguments.pixels as usize,
+        pixels: arguments.pixels.map(|pixels| pixels as usize),
         passes: arguments.passes,
         seconds: arguments.seconds,
         repeats: arguments.repeats,

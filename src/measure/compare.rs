@@ -11,7 +11,7 @@ use super::observer::Observer;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
 use super::reference::{Reference, scene_hash};
-use super::summary::{Jackknife, bias, blank, counts, summarise};
+use super::summary::{self, bias};
 use super::target::Target;
 use crate::base::error::Result;
 use crate::base::statistics::sidak;
@@ -94,7 +94,7 @@ pub fn compare<'a>(
     let mut summaries = Vec::new();
     let mut parts = Vec::new();
     for (((strategy, pilot), ladder), runs) in strategies.iter().zip(&pilots).zip(&ladders).zip(&runs) {
-        let (summary, jackknife) = summary(strategy, pilot.as_ref(), ladder, runs, &reference.truth);
+        let (summary, jackknife) = summary::of(strategy, pilot.as_ref(), ladder, runs, &reference.truth);
         summaries.push(summary);
         parts.push((Curve::of(runs, ladder), jackknife));
     }
@@ -142,29 +142,6 @@ fn accuracy(options: &Options<'_>, pilots: &[Option<Trial>], ladders: &[Vec<u32>
         Some(pilot.expected_rel_mse(*ladder.last()?))
     });
     best.fold(1e-2, f64::min).max(1e-8) / 150.0
-}
-
-fn summary(
-    strategy: &Configured,
-    pilot: Option<&Trial>,
-    ladder: &[u32],
-    runs: &Runs,
-    truth: &Truth,
-) -> (Summary, Jackknife) {
-    let mut begun = blank(strategy);
-    match pilot {
-        Some(Err(error)) => begun.error = Some(error.to_string()),
-        Some(Ok(pilot)) if ladder.is_empty() => {
-            begun.skipped = Some(format!("skipped: one pass is {:.2} s of counted work", pilot.work_s(1)));
-        }
-        Some(Ok(pilot)) => begun.counts = counts(pilot.counts),
-        None => {}
-    }
-    let (mut summary, jackknife) = summarise(begun, truth, runs, ladder);
-    if let Some(error) = runs.rows.iter().find_map(|row| row.error.clone()) {
-        summary.error = Some(error);
-    }
-    (summary, jackknife)
 }
 
 /// The chance that any one of all right strategies of a scene is found biased.

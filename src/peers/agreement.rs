@@ -42,7 +42,7 @@ impl Agreement {
         let all: Vec<usize> = (0..pixels.len()).collect();
         let whole = Means::of(truth, images, &all);
         let half_width = student_quantile(0.975, freedom) * whole.noise() / whole.truth;
-        let ratio = Interval { mean: whole.runs.mean / whole.truth, half_width };
+        let ratio = Interval::symmetric(whole.runs.mean / whole.truth, half_width);
         let [one, together] =
             [0.05, sidak(0.01, blocks.len())].map(|level| student_quantile(1.0 - 0.5 * level, freedom));
         let mut found = Self { ratio, blocks: blocks.len(), beyond_95: 0, beyond_all: 0, worst: 0.0 };
@@ -106,7 +106,10 @@ mod tests {
     #[test]
     fn equal_images_agree_within_their_noise() {
         let found = agreement(|_, _| 1.0);
-        assert!((found.ratio.mean - 1.0).abs() < found.ratio.half_width && found.ratio.half_width < 0.01, "{found:?}");
+        assert!(
+            (found.ratio.mean - 1.0).abs() < found.ratio.half_width() && found.ratio.half_width() < 0.01,
+            "{found:?}"
+        );
         assert!(found.blocks == 64 && found.beyond_95 < 10 && found.beyond_all == 0, "{found:?}");
     }
 
@@ -117,7 +120,7 @@ mod tests {
             (7, 7) => 0.8,
             _ => 1.0,
         });
-        assert!((found.ratio.mean - 1.0).abs() < found.ratio.half_width, "{found:?}");
+        assert!((found.ratio.mean - 1.0).abs() < found.ratio.half_width(), "{found:?}");
         assert_eq!(found.beyond_all, 2, "{found:?}");
         assert!((found.worst.abs() - 0.2).abs() < 0.05, "{found:?}");
     }

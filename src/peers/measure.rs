@@ -13,6 +13,7 @@ use crate::base::random::RunKey;
 use crate::export::export;
 use crate::image::exr;
 use crate::measure::errors::Truth;
+use crate::measure::experiment::Runs;
 use crate::measure::films::Films;
 use crate::measure::observer::Observer;
 use crate::measure::summary::summarise;
@@ -306,11 +307,10 @@ impl<'a> Session<'a> {
     }
 
     fn summary(&self) -> Summary {
-        let last = self.ground.options.spp.last().copied().unwrap_or(0);
-        let mut rows: Vec<&Row> = self.rows.iter().filter(|row| row.passes == last).collect();
-        rows.sort_by_key(|row| row.run);
-        let images: Vec<&[Vec3]> = self.images.values().map(Vec::as_slice).collect();
-        summarise(self.blank(), &self.ground.truth, &rows, &images)
+        let mut rows = self.rows.clone();
+        rows.sort_by_key(|row| (row.passes, row.run));
+        let runs = Runs { rows, images: self.images.values().cloned().collect() };
+        summarise(self.blank(), &self.ground.truth, &runs, self.ground.options.spp).0
     }
 
     /// What a reader must know, as lines under the scene.
@@ -334,7 +334,7 @@ impl<'a> Session<'a> {
                 "`{name}` over the reference: mean {:.4} ± {:.4}; of {blocks} blocks of {SIDE} x {SIDE} pixels {:.1} % lie \
                  outside their 95 % interval and {beyond_all} outside the simultaneous 99 % one{worst}",
                 ratio.mean,
-                ratio.half_width,
+                ratio.half_width(),
                 100.0 * beyond_95 as f64 / blocks as f64,
             ));
         }

@@ -69,6 +69,11 @@ impl Row {
         Self { error: Some(error), ..Self::blank(scene, strategy, run, passes) }
     }
 
+    /// CPU seconds from nothing to the image.
+    pub fn total_cpu_s(&self) -> f64 {
+        self.setup_cpu_s + self.cpu_s
+    }
+
     /// A row without its numbers yet.
     pub fn blank(scene: String, strategy: String, run: u32, passes: u32) -> Self {
         let none = f64::NAN;

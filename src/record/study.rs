@@ -8,7 +8,7 @@ use super::{Machine, number};
 use serde::{Deserialize, Serialize};
 
 /// Version of the files' layout; files of another version are refused.
-pub const STUDY_SCHEMA: u32 = 1;
+pub const STUDY_SCHEMA: u32 = 2;
 
 /// One run of one study: everything in `study.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,8 +108,10 @@ pub enum Format {
     Milliseconds,
     /// Seconds, in nanoseconds.
     Nanoseconds,
-    /// Half of the 95 % interval of the number or share in the column before, shown with it.
-    HalfWidth,
+    /// The lower end of the 95 % interval of the number in the column before, in its unit, shown with it.
+    Low,
+    /// The upper end, in the column after the lower.
+    High,
 }
 
 impl Format {

@@ -66,8 +66,9 @@ pub(super) struct Series {
 pub(super) struct Dot {
     pub(super) x: f64,
     pub(super) y: f64,
-    /// Half the interval of `y`; not finite where it has none.
-    pub(super) half_width: f64,
+    /// The ends of the interval of `y`: NaN where it has none, infinite where the runs cannot tell one.
+    pub(super) low: f64,
+    pub(super) high: f64,
 }
 
 impl Scale {
@@ -240,11 +241,11 @@ fn grid(area: &Area, frame: &Frame) -> Drawn {
 
 /// The interval about the curve; a whisker where there is a single budget.
 fn band(area: &Area, frame: &Frame, Series { points, mark, .. }: &Series) -> Drawn {
-    let ends = points.iter().filter(|p| p.half_width.is_finite()).map(|p| {
-        let low = p.y - p.half_width;
+    let ends = points.iter().filter(|p| p.low.is_finite()).map(|p| {
+        let low = p.low;
         // What reaches down to 0 or below ends at a logarithmic axis.
         let low = if frame.y.scale.logarithmic { low.max(f64::MIN_POSITIVE) } else { low };
-        (frame.x.at(p.x), frame.y.at(low), frame.y.at(p.y + p.half_width))
+        (frame.x.at(p.x), frame.y.at(low), frame.y.at(p.high))
     });
     let ends: Vec<(i32, i32, i32)> = ends.collect();
     if let &[(x, low, high)] = &ends[..] {

@@ -4,12 +4,14 @@
 //! give the same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
 
 mod chart;
-mod curve;
-pub mod figures;
+mod facts;
+mod headline;
 mod mark;
 mod number;
+mod order;
 mod page;
 mod plot;
+mod rows;
 mod sheet;
 pub mod splice;
 mod study;
@@ -51,7 +53,7 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
             )));
         }
         files.push(Derived { text: page(run, scene, rows, &plot_name), name: page_name });
-        files.push(Derived { text: plot(scene, rows)?, name: plot_name });
+        files.push(Derived { text: plot(scene)?, name: plot_name });
     }
     Ok(files)
 }

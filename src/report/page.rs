@@ -1,6 +1,7 @@
 //! The same in Markdown: a page for a scene, and a shorter section for a page that people write.
 
-use super::table::{facts, sheets, warnings};
+use super::facts::{facts, warnings};
+use super::table::sheets;
 use crate::record::{Row, RunRecord, SceneRecord};
 use std::fmt::Write;
 
@@ -9,7 +10,7 @@ use std::fmt::Write;
 /// `plot` is the address of its plot as seen from the page; `rows` may hold other scenes too.
 pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("#", run, scene, plot);
-    for sheet in sheets(run, scene, rows) {
+    for sheet in sheets(scene, rows) {
         _ = write!(text, "\n{}", sheet.markdown(2));
     }
     let machine = &run.machine;
@@ -28,7 +29,7 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
 /// `plot` is the address of its plot as seen from the page.
 pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("##", run, scene, plot);
-    if let Some(answer) = sheets(run, scene, rows).first() {
+    if let Some(answer) = sheets(scene, rows).first() {
         _ = write!(text, "\n{}", answer.markdown(3));
     }
     _ = writeln!(text, "\nMade by `{}` ({}, revision {}, {}).", run.command, run.date, run.revision, run.machine.cpu);

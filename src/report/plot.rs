@@ -1,24 +1,20 @@
 //! Error against time as a picture: log-log, one curve per strategy, its interval as a band.
 
 use super::chart::{Chart, Dot, Scale, Series};
-use super::curve::{Curve, Point, rows_of};
-use super::figures;
 use super::mark::{Line, Mark};
+use super::order::{measured, ordered};
 use crate::base::error::Result;
-use crate::record::{Claim, Row, SceneRecord, Summary};
+use crate::record::{Claim, Point, SceneRecord, Summary};
 
 /// The plot of a scene as SVG: relMSE over receivers against CPU seconds, set-up included, means over runs with 95 %
 /// intervals.
 ///
 /// Biased strategies are dashed and hollow, other renderers dotted. What a logarithmic axis cannot show (an error of
-/// exactly 0) is named under the legend. `rows` may hold other scenes too.
-pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
-    let mut summaries: Vec<&Summary> = scene.summaries.iter().collect();
-    summaries.sort_by(|a, b| figures::order(a, b));
-    let rows = rows_of(rows, &scene.name);
+/// exactly 0) is named under the legend.
+pub fn plot(scene: &SceneRecord) -> Result<String> {
     let mut exact: Vec<String> = Vec::new();
     let mut series = Vec::new();
-    for summary in summaries {
+    for summary in ordered(scene).into_iter().filter(|s| measured(s)) {
         // By name and not by rank: a strategy keeps its look from scene to scene of a run.
         let of = |group: fn(&Claim) -> bool| scene.summaries.iter().filter(move |s| group(&s.claim));
         let before = |s: &&Summary| s.strategy < summary.strategy;
@@ -28,12 +24,12 @@ pub fn plot(scene: &SceneRecord, rows: &[Row]) -> Result<String> {
         } else {
             of(is_strategy).filter(before).count()
         };
-        let curve = Curve::of(&rows, &summary.strategy);
-        if curve.is_exact() {
+        if summary.curve.iter().any(|point| point.rel_mse.mean == 0.0) {
             exact.push(format!("exact, not drawn: {}", summary.strategy));
         }
-        let dot = |p: &Point| Dot { x: p.seconds, y: p.error, half_width: p.half_width };
-        let points = curve.points.iter().filter(|p| p.is_drawable()).map(dot).collect();
+        let is_drawable = |p: &&Point| [p.cpu_s.mean, p.rel_mse.mean].iter().all(|&v| v.is_finite() && v > 0.0);
+        let dot = |p: &Point| Dot { x: p.cpu_s.mean, y: p.rel_mse.mean, low: p.rel_mse.low, high: p.rel_mse.high };
+        let points = summary.curve.iter().filter(is_drawable).map(dot).collect();
         series.push(Series { name: summary.strategy.clone(), mark: Mark::new(&summary.claim, nth), points });
     }
     let mut remarks = Vec::new();

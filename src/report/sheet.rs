@@ -1,20 +1,21 @@
 //! A table before it is known where it will be shown: on a terminal or in Markdown.
 
-use super::figures;
+use super::number::{Estimate, HEAVY, TOO_FEW};
+use super::order::{self, measured};
 use crate::record::Summary;
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use std::fmt::Write;
 
 /// One column: its head (lines separated by `\n`) and what it says of a strategy.
 pub(super) struct Column<'a> {
-    head: &'static str,
-    cell: Box<dyn Fn(&Summary) -> String + 'a>,
+    head: String,
+    cell: Box<dyn Fn(&Summary) -> Estimate + 'a>,
 }
 
 impl<'a> Column<'a> {
     /// A column headed `head`.
-    pub(super) fn new(head: &'static str, cell: impl Fn(&Summary) -> String + 'a) -> Self {
-        Self { head, cell: Box::new(cell) }
+    pub(super) fn new<T: Into<Estimate>>(head: impl Into<String>, cell: impl Fn(&Summary) -> T + 'a) -> Self {
+        Self { head: head.into(), cell: Box::new(move |summary| cell(summary).into()) }
     }
 }
 
@@ -28,8 +29,10 @@ pub(super) struct Head {
 pub(super) enum Entry {
     /// A name as it is typed, and what is to be said about it in words.
     Name(String, String),
-    /// Words or figures.
+    /// Words, or a figure without doubt.
     Text(String),
+    /// A figure with its interval.
+    Figure(Estimate),
 }
 
 /// A row.
@@ -69,20 +72,55 @@ impl Sheet {
     /// reason.
     pub(super) fn new(title: &str, summaries: &[&Summary], columns: &[Column], below: Vec<String>) -> Self {
         let lines = summaries.iter().map(|summary| {
-            let cells =
-                columns.iter().map(|c| if figures::measured(summary) { (c.cell)(summary) } else { String::new() });
-            let name = Entry::Name(summary.strategy.clone(), remark(summary));
+            let cell = |column: &Column| match measured(summary) {
+                true => Entry::Figure((column.cell)(summary)),
+                false => Entry::Text(String::new()),
+            };
+            let name = Entry::Name(summary.strategy.clone(), remark(summary).to_owned());
             Line {
-                cells: std::iter::once(name).chain(cells.map(Entry::Text)).collect(),
-                group: u32::from(figures::group(summary).min(figures::FLOOR)),
+                cells: std::iter::once(name).chain(columns.iter().map(cell)).collect(),
+                group: u32::from(order::group(summary).min(order::FLOOR)),
             }
         });
-        let heads = std::iter::once(Head::left("strategy")).chain(columns.iter().map(|c| Head::right(c.head)));
-        Self { title: title.to_owned(), heads: heads.collect(), lines: lines.collect(), below }
+        let heads = std::iter::once(Head::left("strategy")).chain(columns.iter().map(|c| Head::right(&c.head)));
+        Self { title: title.to_owned(), heads: heads.collect(), lines: lines.collect(), below }.explained()
     }
 
-    /// The table in plain text.
+    /// With what the marks in its figures mean.
+    pub(super) fn explained(mut self) -> Self {
+        let marks = [
+            (HEAVY, "too heavy a tail to say: a few pixels decide the mean, the runs cannot bound it from there on"),
+            (TOO_FEW, "too few runs for an interval"),
+        ];
+        for (mark, meaning) in marks {
+            let is_marked = |entry: &Entry| matches!(entry, Entry::Figure(estimate) if estimate.interval == mark);
+            if self.lines.iter().flat_map(|line| &line.cells).any(is_marked) {
+                self.below.push(format!("{mark}: {meaning}."));
+            }
+        }
+        self
+    }
+
+    /// The table in plain text. One that would be too wide has its intervals below the figures and not beside them.
     pub(super) fn text(&self) -> String {
+        let beside = self.drawn(Estimate::line);
+        let is_wide = beside.lines().any(|line| line.chars().count() > WIDTH);
+        let drawn = if is_wide {
+            self.drawn(|e| format!("{}\n{}", e.figure, e.interval).trim_end().to_owned())
+        } else {
+            beside
+        };
+        let mut text = format!("{}\n\n{drawn}\n", self.title);
+        if !self.below.is_empty() {
+            text.push('\n');
+        }
+        let lines = self.below.iter().flat_map(|note| broken(note, WIDTH - 1));
+        lines.for_each(|line| _ = writeln!(text, " {line}"));
+        text
+    }
+
+    /// Heads and lines, with figures as `figure` writes them.
+    fn drawn(&self, figure: impl Fn(&Estimate) -> String) -> String {
         let style = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
         let mut table = Table::new();
         table.load_style(style).set_content_arrangement(ContentArrangement::Disabled);
@@ -95,18 +133,13 @@ impl Sheet {
                 Entry::Name(name, remark) => Cell::new([folded(name), folded(remark)].join("\n").trim_end()),
                 Entry::Text(text) if head.left => Cell::new(folded(text)),
                 Entry::Text(text) => Cell::new(text).set_alignment(CellAlignment::Right),
+                Entry::Figure(estimate) => Cell::new(figure(estimate)).set_alignment(CellAlignment::Right),
             }));
         }
         for (column, _) in table.column_iter_mut().zip(&self.heads).filter(|(_, head)| !head.left) {
             column.set_cell_alignment(CellAlignment::Right);
         }
-        let mut text = format!("{}\n\n{}\n", self.title, table.trim_fmt());
-        if !self.below.is_empty() {
-            text.push('\n');
-        }
-        let lines = self.below.iter().flat_map(|note| broken(note, WIDTH - 1));
-        lines.for_each(|line| _ = writeln!(text, " {line}"));
-        text
+        table.trim_fmt()
     }
 
     /// The table in GitHub's Markdown, under a heading of `level`, 1 to 6.
@@ -126,6 +159,7 @@ impl Sheet {
                     Entry::Name(name, remark) if remark.is_empty() => write!(text, " `{}` |", escaped(name)),
                     Entry::Name(name, remark) => write!(text, " `{}`<br>{} |", escaped(name), escaped(remark)),
                     Entry::Text(cell) => write!(text, " {} |", escaped(cell)),
+                    Entry::Figure(estimate) => write!(text, " {} |", escaped(&estimate.line())),
                 };
             }
             text.push('\n');
@@ -163,13 +197,13 @@ fn escaped(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// What is to be said of a strategy in words; empty for most.
-fn remark(summary: &Summary) -> String {
+/// What is to be said of a strategy in a word; empty for most.
+fn remark(summary: &Summary) -> &'static str {
     match (&summary.error, &summary.skipped) {
-        (Some(error), _) => format!("failed: {error}"),
-        (None, Some(skipped)) => skipped.clone(),
-        (None, None) if summary.unstable => "unstable".to_owned(),
-        (None, None) => String::new(),
+        (Some(_), _) => "failed, see below",
+        (None, Some(_)) => "not run, see below",
+        (None, None) if summary.unstable => "unstable",
+        (None, None) => "",
     }
 }
 

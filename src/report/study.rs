@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::Mark;
-use super::number::{NONE, bytes, grouped, percent, short, signed_percent, with_share};
+use super::number::{Estimate, NONE, bytes, grouped, percent, short};
 use super::sheet::{Entry, Head, Line, Sheet, WIDTH, broken};
 use crate::base::error::Result;
 use crate::record::study::{
@@ -129,11 +129,13 @@ fn entry(column: &ColumnRecord, cell: &Cell, half_width: Option<f64>) -> Entry {
         (Cell::Whole(count), Format::Bytes) => bytes(*count),
         (Cell::Whole(count), _) => grouped(*count),
         (Cell::Number(mean), format) => match (format, half_width) {
-            (Format::Percent, Some(half_width)) => signed_percent(Interval { mean: *mean, half_width }),
+            (Format::Percent, Some(half_width)) => {
+                Estimate::signed_percent(Interval::symmetric(*mean, half_width)).line()
+            }
             (Format::Percent, None) => percent(*mean, 1.0),
             (Format::Milliseconds, _) => short(1e3 * mean),
             (Format::Nanoseconds, _) => short(1e9 * mean),
-            (_, Some(half_width)) => with_share(Interval { mean: *mean, half_width }),
+            (_, Some(half_width)) => Estimate::of(Interval::symmetric(*mean, half_width)).line(),
             (_, None) => short(*mean),
         },
     };
@@ -160,7 +162,8 @@ fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotR
             let dot = |cells: &Cells| {
                 let value = |column: &str| cell(cells, column).and_then(|cell| cell.number());
                 let half_width = width.and_then(|at| cells[at + 1].number()).unwrap_or(f64::NAN);
-                Some(Dot { x: value(&plot.x.column)?, y: value(column)?, half_width })
+                let y = value(column)?;
+                Some(Dot { x: value(&plot.x.column)?, y, low: y - half_width, high: y + half_width })
             };
             let points = rows.iter().filter(of_series).filter_map(dot);
             let points = points.filter(|dot| x.shows(dot.x) && y.shows(dot.y)).collect();

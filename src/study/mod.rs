@@ -15,11 +15,13 @@ mod scaling;
 mod soft_shadows;
 mod strategies;
 mod table;
-mod timing;
+mod trial;
 mod visible;
 
 use crate::base::error::{Error, Result};
 use crate::base::names;
+use crate::measure::clock::{Clock, Cpu};
+use crate::measure::engine::Engine;
 use crate::measure::environment;
 use crate::measure::observer::Observer;
 use crate::measure::reference::Reference;
@@ -31,7 +33,6 @@ use crate::scene::file::Overrides;
 use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured, STRATEGIES};
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Every study, in the order of `citylights list studies`.
 pub const STUDIES: [Entry; 6] =
@@ -58,11 +59,12 @@ pub struct Options {
     pub strategies: Option<String>,
     /// Receivers drawn by area, for what needs no rays or only a few.
     pub receivers: usize,
-    /// Receivers that errors are taken over.
-    pub pixels: usize,
+    /// Receivers of the frame that errors are taken at, instead of as many as each study takes.
+    pub pixels: Option<usize>,
     /// Passes of a run.
     pub passes: u32,
-    /// Most CPU seconds of a run: a strategy that cannot do all passes in it does fewer.
+    /// Most counted work of a run, in [nominal seconds](crate::measure::work): a strategy that cannot do all passes in it
+    /// does fewer.
     pub seconds: f64,
     /// Independent runs.
     pub repeats: u32,
@@ -98,7 +100,7 @@ impl Entry {
         folder: &dyn Fn() -> Result<PathBuf>,
         watch: &dyn Observer,
     ) -> Result<Study> {
-        (self.run)(&Session { entry: *self, options, command, folder, watch, begun: Instant::now() })
+        (self.run)(&Session { entry: *self, options, command, folder, watch, clock: Cpu::new() })
     }
 }
 
@@ -109,10 +111,16 @@ struct Session<'a> {
     command: String,
     folder: &'a dyn Fn() -> Result<PathBuf>,
     watch: &'a dyn Observer,
-    begun: Instant,
+    /// From when the study began.
+    clock: Cpu,
 }
 
 impl Session<'_> {
+    /// What times strategies.
+    fn engine(&self) -> Engine<'_> {
+        Engine { clock: &self.clock, workers: self.options.threads, seed: self.options.seed }
+    }
+
     /// Opens the study's tables.
     fn open(&self, tables: Vec<TableRecord>) -> Result<StudyWriter> {
         let record = StudyRecord {
@@ -138,7 +146,12 @@ impl Session<'_> {
 
     /// Ends the study.
     fn finish(&self, writer: StudyWriter) -> Result<Study> {
-        writer.finish(self.begun.elapsed().as_secs_f64())
+        writer.finish(self.clock.wall_s())
+    }
+
+    /// How many receivers errors are taken at: what was asked for, or the study's `own`.
+    fn pixels(&self, own: usize) -> usize {
+        self.options.pixels.unwrap_or(own)
     }
 
     /// The recipes asked for, or `own`.

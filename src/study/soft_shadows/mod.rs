@@ -31,7 +31,8 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;
     writer.note(format!(
         "Errors over {} receivers in {} independent runs; all contenders of a table in each run.",
-        options.pixels, options.repeats
+        session.pixels(measure::PIXELS),
+        options.repeats
     ));
     session.finish(writer)
 }
