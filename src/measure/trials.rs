@@ -93,10 +93,8 @@ impl Trials<'_> {
         if sampler.most_passes() > 1 {
             return Ok(0.0);
         }
-        let frame = Frame::new(
-            &self.target.frame[..self.target.frame.len().min(1)],
-            RunKey { seed: self.seed, run: 0 },
-        );
+        let frame =
+            Frame::new(&self.target.frame[..self.target.frame.len().min(1)], RunKey { seed: self.seed, run: 0 });
         let mut times: Vec<f64> = alone()?
             .install(|| (0..STATES).map(|pass| timed(|| drop(sampler.begin(frame, pass..pass + 1))).1.cpu).collect());
         times.sort_by(f64::total_cmp);
