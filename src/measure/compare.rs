@@ -38,8 +38,8 @@ pub struct Options<'a> {
     pub threads: usize,
     /// Folder of cached references.
     pub cache: &'a Path,
-    /// The result folder.
-    pub folder: &'a Path,
+    /// Where the last image of each finished run is kept.
+    pub films: &'a Films,
 }
 
 /// What a comparison found on one scene.
@@ -206,8 +206,8 @@ enum Report {
 
 impl Comparison<'_> {
     fn run(&mut self, before: &[Row], writer: &mut RowWriter, watch: &dyn Observer) -> Result<()> {
-        let films = Films::of(self.options.folder);
-        let units = self.units(before, &films);
+        let films = self.options.films;
+        let units = self.units(before);
         watch.begin("runs", units.len() as u64);
         let next = AtomicUsize::new(0);
         let (send, receive) = mpsc::channel();
@@ -237,7 +237,7 @@ impl Comparison<'_> {
                         stored
                     }
                     Report::Finished { strategy, run, image } => {
-                        let stored = films.save(this.scene(), this.options.strategies[strategy].name(), run, &image);
+                        let stored = films.save(&this.last(strategy, run), &image);
                         images.push(((strategy, run), image));
                         stored
                     }
@@ -260,20 +260,29 @@ impl Comparison<'_> {
         self.target.stage.scene().name()
     }
 
+    /// The row of a run's largest budget, without its numbers.
+    fn last(&self, strategy: usize, run: u32) -> Row {
+        let passes = self.ladders[strategy].last().copied().unwrap_or(0);
+        Row::blank(self.scene().to_owned(), self.options.strategies[strategy].name().to_owned(), run, passes)
+    }
+
     /// The (strategy, run) pairs still to do, in seeded random order; takes over what is finished.
-    fn units(&mut self, before: &[Row], films: &Films) -> Vec<(usize, u32)> {
+    fn units(&mut self, before: &[Row]) -> Vec<(usize, u32)> {
         let mut units = Vec::new();
         for (i, strategy) in self.options.strategies.iter().enumerate() {
             for run in 0..self.options.repeats {
-                let Some(&last) = self.ladders[i].last() else { continue };
+                if self.ladders[i].is_empty() {
+                    continue;
+                }
+                let last = self.last(i, run);
                 let rows: Vec<&Row> = before
                     .iter()
                     .filter(|r| {
                         r.scene == self.scene() && r.strategy == strategy.name() && r.run == run && r.error.is_none()
                     })
                     .collect();
-                let film = films.load(self.scene(), strategy.name(), run, self.target.receivers.len());
-                match film.filter(|_| rows.iter().any(|row| row.passes == last)) {
+                let film = self.options.films.load(&last, self.target.receivers.len());
+                match film.filter(|_| rows.iter().any(|row| row.key() == last.key())) {
                     Some(film) => {
                         self.rows.extend(rows.into_iter().cloned());
                         self.films.insert((i, run), film);

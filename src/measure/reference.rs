@@ -113,7 +113,7 @@ fn has_triangles(stage: &Stage) -> bool {
     stage.scene().lights().iter().any(|light| light.kind() == Kind::Triangle)
 }
 
-/// The file name of a reference: a hash of all that decides it.
+/// What names a reference: a hash of all that decides it.
 fn name(target: &Target<'_>, points: u32) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene_hash(target.stage.scene()).as_bytes());
@@ -121,7 +121,7 @@ fn name(target: &Target<'_>, points: u32) -> String {
     target.receivers.iter().for_each(|at| {
         hasher.update(&at.pixel.to_le_bytes());
     });
-    hasher.finalize().to_hex()[..32].to_owned()
+    hasher.finalize().to_hex().to_string()
 }
 
 /// The content hash that names a scene: 32 hexadecimal digits.

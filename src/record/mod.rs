@@ -5,7 +5,9 @@
 //! Numbers are in base units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A
 //! [`study`]'s folder holds `study.json` and a CSV file a table in the same manner.
 
+pub mod folder;
 mod number;
+mod origin;
 pub mod row;
 pub mod run;
 pub mod scene;
@@ -14,6 +16,7 @@ pub mod study;
 pub mod study_store;
 pub mod summary;
 
+pub use folder::{Kind, ResultFolder};
 pub use row::Row;
 pub use run::{Machine, RunRecord};
 pub use scene::{ReferenceRecord, SceneRecord};

@@ -51,28 +51,27 @@ fn run(session: &Session<'_>) -> Result<Study> {
     };
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
-    file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
-    let mut writer = session.open(vec![growth(session, &strategies), exponents()])?;
+    let smallest = file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
+    let mut writer = session.open([&smallest], vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
         at_size(session, &mut writer, path, &strategies, lights)?;
     }
+    let mut laws = Vec::new();
     for strategy in &strategies {
         for (column, what, _) in QUANTITIES {
             if let Some(law) = law(&writer, strategy, column) {
-                writer.row(
-                    "exponents",
-                    vec![
-                        strategy.name().into(),
-                        what.into(),
-                        law.exponent.into(),
-                        law.factor.into(),
-                        law.residual.into(),
-                        (law.points as u64).into(),
-                    ],
-                )?;
+                laws.push(vec![
+                    strategy.name().into(),
+                    what.into(),
+                    law.exponent.into(),
+                    law.factor.into(),
+                    law.residual.into(),
+                    (law.points as u64).into(),
+                ]);
             }
         }
     }
+    writer.put("exponents", &[], laws)?;
     session.finish(writer)
 }
 
@@ -149,6 +148,10 @@ fn at_size(
 ) -> Result<()> {
     let options = session.options;
     let scene = file::open(path, &Overrides { lights: Some(lights), ..options.overrides.clone() })?;
+    let key = [("lights", (scene.lights().len() as u64).into())];
+    if writer.has("growth", &key, strategies.len()) {
+        return Ok(());
+    }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     // The truth takes a ray for every light: of many lights, at fewer receivers.
     let pixels = match lights {
@@ -158,6 +161,12 @@ fn at_size(
     };
     let target = Target::of(&stage, spread(stage.receivers(), pixels));
     let reference = session.reference(&target)?;
+    writer.note(format!(
+        "{} lights, {} of which can reach what the camera sees; the reference's own relMSE is {:.1e}.",
+        stage.scene().lights().len(),
+        stage.lights().len(),
+        reference.truth.own_rel_mse()
+    ))?;
     let trials = Trials {
         target: &target,
         truth: &reference.truth,
@@ -174,19 +183,14 @@ fn at_size(
         (strategy, Summary { skipped: Some(skipped), ..blank(strategy) })
     });
     let summaries = trials.run(&tried, session.watch)?;
+    let mut rows = Vec::new();
     for (strategy, summary) in tried.iter().copied().zip(summaries).chain(skipped) {
         let timing = Timing::of(&trials, strategy, &summary, stage.receivers().len())?;
         let mut cells = vec![(stage.scene().lights().len() as u64).into()];
         cells.extend(growth_cells(&summary, timing, &target));
-        writer.row("growth", cells)?;
+        rows.push(cells);
     }
-    writer.note(format!(
-        "{} lights, {} of which can reach what the camera sees; the reference's own relMSE is {:.1e}.",
-        stage.scene().lights().len(),
-        stage.lights().len(),
-        reference.truth.own_rel_mse()
-    ));
-    Ok(())
+    writer.put("growth", &key, rows)
 }
 
 fn growth_cells(summary: &Summary, timing: Option<Timing>, target: &Target<'_>) -> Vec<Cell> {

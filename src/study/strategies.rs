@@ -8,7 +8,7 @@ use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
 use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
 use super::timing::{self, Timing};
-use super::{Entry, Session};
+use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::measure::plan::Budget;
 use crate::measure::summary::blank;
@@ -59,7 +59,9 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
         files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
-    let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
+    told_apart(&scenes)?;
+    let mut writer =
+        session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
         by_probability(session, &mut writer, scene.clone(), &strategies)?;
         by_measuring(session, &mut writer, scene, &strategies)?;
@@ -165,15 +167,20 @@ fn by_probability(
     let mut unknown = Vec::new();
     for strategy in strategies.iter().filter(|strategy| blank(strategy).claim != Claim::Oracle) {
         session.watch.check()?;
+        let key = [("strategy", strategy.name().into())];
+        if writer.has(&table, &key, 1) {
+            session.watch.advance(1);
+            continue;
+        }
         let built = strategy.build(BuildContext { stage: &stage, seed: session.options.seed });
         match built.map(|sampler| qualities(&stage, sampler.as_ref(), &by_area.receivers)) {
             Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
-            Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
+            Ok(found) => writer.put(&table, &key, vec![quality_cells(strategy, &by_area, &found)])?,
             Err(error) => {
                 let mut cells = vec![strategy.name().into(), claim(&blank(strategy))];
                 cells.resize(10, Cell::Missing);
                 cells.push(format!("failed: {error}").as_str().into());
-                writer.row(&table, cells)?;
+                writer.put(&table, &key, vec![cells])?;
             }
         }
         session.watch.advance(1);
@@ -181,8 +188,9 @@ fn by_probability(
     session.watch.end();
     if !unknown.is_empty() {
         let (scene, names) = (stage.scene().name(), unknown.join(", "));
-        writer
-            .note(format!("{scene}: not in the table of variance, since their probabilities cannot be told: {names}."));
+        writer.note(format!(
+            "{scene}: not in the table of variance, since their probabilities cannot be told: {names}."
+        ))?;
     }
     Ok(())
 }
@@ -228,9 +236,19 @@ fn by_measuring(
 ) -> Result<()> {
     let options = session.options;
     let table = measured_table(&scene);
+    if writer.has(&table, &[], strategies.len()) {
+        return Ok(());
+    }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let target = Target::of(&stage, spread(stage.receivers(), options.pixels));
     let reference = session.reference(&target)?;
+    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
+    writer.note(format!(
+        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
+        stage.scene().name(),
+        stage.scene().lights().len(),
+        stage.lights().len()
+    ))?;
     let budget = Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds };
     let trials = Trials {
         target: &target,
@@ -248,6 +266,7 @@ fn by_measuring(
         found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
     }
     let receivers = target.receivers.len() as f64;
+    let mut rows = Vec::new();
     let (oracle, intensity) = (of(&found, "oracle"), of(&found, "intensity"));
     for one in &found {
         let summary = &one.summary;
@@ -268,16 +287,9 @@ fn by_measuring(
             one.ratio(intensity, Found::error_samples_s).into(),
             remark(summary),
         ]);
-        writer.row(&table, cells)?;
+        rows.push(cells);
     }
-    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
-    writer.note(format!(
-        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
-        stage.scene().name(),
-        stage.scene().lights().len(),
-        stage.lights().len()
-    ));
-    Ok(())
+    writer.put(&table, &[], rows)
 }
 
 /// What was found of one strategy.

@@ -8,7 +8,7 @@
 
 use super::cutoff::sizes;
 use super::table::{both, column, interval, plot};
-use super::{Entry, Session};
+use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::base::statistics::Moments;
@@ -22,6 +22,7 @@ use crate::record::study::{Cell, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
+use crate::scene::Scene;
 use crate::scene::file::{self, Overrides};
 use crate::strategy::registry::{self, Configured};
 use crate::strategy::{BuildContext, Role};
@@ -85,6 +86,7 @@ const SWEEP: [&str; 20] = [
 fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;
     let sizes = sizes(FEWEST, options.max_lights);
+    let smallest = sizes[0];
     let steps = STEPS.iter().chain(&FLOORS).map(|&(step, name)| Ok((step, registry::parse(name)?)));
     let steps: Vec<(&str, Configured)> = steps.collect::<Result<_>>()?;
     let sweep = registry::parse_list(options.strategies.as_deref().unwrap_or(&SWEEP.join(",")))?;
@@ -95,12 +97,14 @@ fn run(session: &Session<'_>) -> Result<Study> {
     tables.push(sweep_table(session));
     let swept = session.scenes(&SWEPT);
     // Read once before anything is measured: a misspelt name must not cost an hour.
-    for path in &swept {
-        file::open(path, &options.overrides)?;
-    }
-    let mut writer = session.open(tables)?;
+    let scenes: Vec<Scene> = swept.iter().map(|path| file::open(path, &options.overrides)).collect::<Result<_>>()?;
+    told_apart(&scenes)?;
+    let smallest = Overrides { lights: Some(smallest), ..options.overrides.clone() };
+    let own = [file::open(Path::new(CANYON), &smallest)?, file::open(Path::new(PLAZA), &options.overrides)?];
+    let mut writer = session.open(scenes.iter().chain(&own), tables)?;
     for (table, path, lights) in &frames {
         let frame = Frame::open(session, Path::new(path), *lights)?;
+        frame.note(&mut writer)?;
         let few = frame.stage.scene().lights().len() <= MOST_OF_ORACLE;
         let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
         let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
@@ -108,30 +112,41 @@ fn run(session: &Session<'_>) -> Result<Study> {
         passes.retain(|&n| n <= options.passes);
         passes.dedup();
         for passes in passes {
+            let key = [("passes", u64::from(passes).into())];
+            if writer.has(table, &key, steps.len()) {
+                continue;
+            }
             let found = frame.all(session, &strategies, passes)?;
             let product =
                 |name: &str| steps.iter().zip(&found).find(|((_, of), _)| of.name() == name).map(|f| f.1.product());
             let (classic, tree) = (product(steps[0].1.name()), product("light-tree"));
+            let mut rows = Vec::new();
             for ((step, strategy), found) in steps.iter().zip(&found) {
                 let timed = strategy.info().role != Role::Oracle;
                 let mut cells: Vec<Cell> = vec![(*step).into(), strategy.name().into(), u64::from(passes).into()];
                 cells.extend(found.cells(timed));
                 let ratio = |to: Option<f64>| to.filter(|_| timed).map(|to| found.product() / to);
                 cells.extend([ratio(classic).into(), ratio(tree).into()]);
-                writer.row(table, cells)?;
+                rows.push(cells);
             }
+            writer.put(table, &key, rows)?;
         }
-        frame.note(&mut writer);
     }
     for path in &swept {
         let frame = Frame::open(session, path, None)?;
+        let key = [("scene", frame.stage.scene().name().into())];
+        if writer.has("sweep", &key, sweep.len()) {
+            continue;
+        }
         let found = frame.all(session, &sweep.iter().collect::<Vec<_>>(), options.passes)?;
+        let mut rows = Vec::new();
         for (strategy, one) in sweep.iter().zip(&found) {
             let mut cells: Vec<Cell> = vec![frame.stage.scene().name().into(), strategy.name().into()];
             cells.extend(one.cells(strategy.info().role != Role::Oracle));
             cells.push((one.product() / found[0].product()).into());
-            writer.row("sweep", cells)?;
+            rows.push(cells);
         }
+        writer.put("sweep", &key, rows)?;
     }
     session.finish(writer)
 }
@@ -302,7 +317,7 @@ impl Frame {
         })
     }
 
-    fn note(&self, writer: &mut StudyWriter) {
+    fn note(&self, writer: &mut StudyWriter) -> Result<()> {
         let (scene, truth) = (self.stage.scene(), &self.reference.truth);
         writer.note(format!(
             "{}, {} lights, {} of which can reach what the camera sees, at {} receivers of {}; the reference's own relMSE is {:.1e}.",
@@ -312,6 +327,6 @@ impl Frame {
             self.places.len(),
             self.stage.receivers().len(),
             truth.own_rel_mse()
-        ));
+        ))
     }
 }

@@ -86,9 +86,23 @@ pub(super) fn laws() -> TableRecord {
 const OWN: f64 = 1e-8;
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
+    let sizes = SIZES.map(|(_, side)| format!("{side} m")).join(", ");
+    let rays = RAYS.map(|rays| rays.to_string()).join(", ");
+    let title = format!(
+        "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
+         penumbra (orange)"
+    );
+    let picture = writer.picture("shadows.png", title)?;
     let (mut pictures, mut size) = (Vec::new(), (0, 0));
     for (name, side) in SIZES {
         session.watch.check()?;
+        let key = [("side_m", f64::from(side).into())];
+        let law_key = |points: &str| [("light", format!("{name} {points}").as_str().into())];
+        let is_there = writer.has("rays", &key, POINTS.len() * RAYS.len())
+            && POINTS.iter().all(|points| writer.has("laws", &law_key(points), 1));
+        if is_there && picture.is_none() {
+            continue;
+        }
         let stage = Stage::new(one_light(session, side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
         let whole = Target::whole(&stage);
         let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
@@ -108,33 +122,38 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
                 ));
             }
         }
-        let contenders: Vec<Contender<'_>> = samplers
-            .iter()
-            .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
-            .collect();
-        let measured = measure(session, &format!("{name} light"), &contenders, &few.receivers, &reference.truth)?;
-        for points in POINTS {
-            let series = format!("{name} {points}");
-            let mut errors = Vec::new();
-            for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
-                let mut cells: Vec<Cell> = vec![
-                    series.as_str().into(),
-                    f64::from(side).into(),
-                    share(Shadow::Umbra).into(),
-                    share(Shadow::Penumbra).into(),
-                    u64::from(*rays).into(),
-                    found.rays.into(),
-                    found.cpu_s.into(),
-                ];
-                cells.extend(both(found.rel_mse));
-                writer.row("rays", cells)?;
-                errors.push((found.rays, found.rel_mse.mean));
+        if !is_there {
+            let contenders: Vec<Contender<'_>> = samplers
+                .iter()
+                .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
+                .collect();
+            let measured = measure(session, &format!("{name} light"), &contenders, &few.receivers, &reference.truth)?;
+            let mut rows = Vec::new();
+            for points in POINTS {
+                let series = format!("{name} {points}");
+                let mut errors = Vec::new();
+                for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
+                    let mut cells: Vec<Cell> = vec![
+                        series.as_str().into(),
+                        f64::from(side).into(),
+                        share(Shadow::Umbra).into(),
+                        share(Shadow::Penumbra).into(),
+                        u64::from(*rays).into(),
+                        found.rays.into(),
+                        found.cpu_s.into(),
+                    ];
+                    cells.extend(both(found.rel_mse));
+                    rows.push(cells);
+                    errors.push((found.rays, found.rel_mse.mean));
+                }
+                let law = PowerLaw::fit(errors);
+                writer.put(
+                    "laws",
+                    &law_key(points),
+                    vec![vec![series.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()]],
+                )?;
             }
-            let law = PowerLaw::fit(errors);
-            writer.row(
-                "laws",
-                vec![series.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()],
-            )?;
+            writer.put("rays", &key, rows)?;
         }
         let shown = samplers.iter().filter(|(points, ..)| *points == "random");
         let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
@@ -144,13 +163,9 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
     }
     let exposure = pictures.first().map_or(1.0, |(_, exposure)| *exposure);
     let rows: Vec<_> = pictures.into_iter().map(|(row, _)| row).collect();
-    let sizes = SIZES.map(|(_, side)| format!("{side} m")).join(", ");
-    let rays = RAYS.map(|rays| rays.to_string()).join(", ");
-    let title = format!(
-        "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
-         penumbra (orange)"
-    );
-    image::write(&writer.picture("shadows.png", title), &sheet(&rows, size), exposure)?;
+    if let Some(path) = picture {
+        image::write(&path, &sheet(&rows, size), exposure)?;
+    }
     Ok(())
 }
 

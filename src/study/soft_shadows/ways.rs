@@ -106,10 +106,18 @@ const NEAR: (f32, f32) = (2.0, 1.2);
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
     for power in RATIOS {
         session.watch.check()?;
-        writer.row("ways", at_ratio(2f32.powi(power), session.options.seed))?;
+        let ratio = 2f32.powi(power);
+        let key = [("ratio", f64::from(ratio).into())];
+        if !writer.has("ways", &key, 1) {
+            writer.put("ways", &key, vec![at_ratio(ratio, session.options.seed)])?;
+        }
     }
     let sizes = SIZES.map(|(name, side)| (name, side, HEIGHT));
     for (name, side, height) in sizes.into_iter().chain([("near", NEAR.0, NEAR.1)]) {
+        let key = [("light", name.into())];
+        if writer.has("by-size", &key, LightSampling::NAMED.len()) {
+            continue;
+        }
         let stages = LightSampling::NAMED
             .iter()
             .map(|&(_, by)| {
@@ -131,12 +139,14 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .collect();
         let measured =
             measure(session, &format!("{name} light, by way"), &contenders, &target.receivers, &reference.truth)?;
+        let mut rows = Vec::new();
         for ((by, _), found) in LightSampling::NAMED.iter().zip(&measured) {
             let mut cells: Vec<Cell> = vec![name.into(), (*by).into(), found.cpu_s.into()];
             cells.extend(both(found.rel_mse));
             cells.push((found.rel_mse.mean * found.cpu_s).into());
-            writer.row("by-size", cells)?;
+            rows.push(cells);
         }
+        writer.put("by-size", &key, rows)?;
     }
     Ok(())
 }
