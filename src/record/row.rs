@@ -96,6 +96,11 @@ impl Row {
         }
     }
 
+    /// What tells it apart from all others of a comparison: scene, strategy, run and passes.
+    pub fn key(&self) -> (&str, &str, u32, u32) {
+        (&self.scene, &self.strategy, self.run, self.passes)
+    }
+
     /// The row's fields in the order of [`COLUMNS`]. Line breaks in texts become spaces: a row is one line.
     pub(super) fn fields(&self) -> [String; COLUMNS.len()] {
         let text = |s: &str| s.replace(['\r', '\n'], " ");

@@ -65,14 +65,14 @@ fn run(session: &Session<'_>) -> Result<Study> {
         .collect();
     let mut tables = vec![law_table()];
     tables.extend(OPENNESS.map(|(name, title)| bias_table(session, name, title, &biased)));
-    let mut writer = session.open(tables)?;
+    let mut writer = session.open([], tables)?;
     for lights in sizes(FEWEST, session.options.max_lights) {
         in_the_plane(session, &mut writer, &strategies, lights)?;
         if lights <= MOST_IN_CITIES {
             in_the_city(session, &mut writer, &strategies, lights)?;
         }
     }
-    writer.note("All lights are points: the truth is an exact sum over all of them, a shadow ray each.".into());
+    writer.note("All lights are points: the truth is an exact sum over all of them, a shadow ray each.".into())?;
     writer.note(format!(
         "Cities: street lamps alone, bare points 30 m apart, 5,000 to 9,000 lm, EV100 {EV100}; receivers by area, half on streets, half on \
          facades, which stay where they are where the buildings are taken away."

@@ -54,7 +54,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
     file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
-    let mut writer = session.open(vec![growth(session, &strategies), exponents()])?;
+    let mut writer = session.open([], vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
         at_size(session, &mut writer, path, &strategies, lights)?;
     }

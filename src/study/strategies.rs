@@ -61,7 +61,8 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
         files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
-    let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
+    let mut writer =
+        session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
         by_probability(session, &mut writer, scene.clone(), &strategies)?;
         by_measuring(session, &mut writer, scene, &strategies)?;

@@ -97,7 +97,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     for path in &swept {
         file::open(path, &options.overrides)?;
     }
-    let mut writer = session.open(tables)?;
+    let mut writer = session.open([], tables)?;
     for (table, path, lights) in &scenes {
         step_by_step(session, &mut writer, table, &open(session, Path::new(path), *lights)?, &steps)?;
     }

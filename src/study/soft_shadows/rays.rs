@@ -149,7 +149,9 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
          penumbra (orange)"
     );
-    image::write(&writer.picture("shadows.png", title), &sheet(&rows, size), exposure)?;
+    if let Some(path) = writer.picture("shadows.png", title)? {
+        image::write(&path, &sheet(&rows, size), exposure)?;
+    }
     Ok(())
 }
 
