@@ -5,10 +5,13 @@ use super::scene::{SceneOptions, pool, threads};
 use super::{Outcome, command, print, say};
 use crate::base::error::{Error, Result};
 use crate::measure::compare::{Compared, Options, compare};
+use crate::measure::clock::Cpu;
+use crate::measure::engine::Engine;
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
 use crate::measure::reference::scene_hash;
+use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::store::{RUN_FILE, RowWriter, create_folder, file_name, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
@@ -32,11 +35,11 @@ pub(super) struct Arguments {
     /// The strategies, with parameters if any: uniform,influence-pick:picks=4; all by default
     #[arg(long, short, value_name = "A,B")]
     strategies: Option<String>,
-    /// Most passes of a strategy in a run; budgets double up to it. By default 64, and more for a strategy that needs
-    /// them to see a bias of 5 % in the image's mean
+    /// Most passes of a strategy in a run; budgets are 1, 4, 16 and so on up to it, each from nothing in one block. By
+    /// default 64, and more for a strategy that needs them to see a bias of 5 % in the image's mean
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     budget: Option<u32>,
-    /// Most CPU seconds of a strategy in a run
+    /// Most counted work of a strategy in a run, in seconds at the committed rates: the same on every machine
     #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     seconds: f64,
     /// Independent runs
@@ -101,7 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         }
         session.finish()?;
         say(&format!("rows, tables and plots: {}", session.folder.display()));
-        Ok(Outcome::Done)
+        Ok(session.outcome())
     })
 }
 
@@ -160,16 +163,18 @@ impl Session {
 
     fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
         let Asked { arguments, strategies, peers, threads } = *asked;
+        let clock = Cpu::new();
+        let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = Options {
             strategies,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),
                 most_passes: arguments.budget.unwrap_or(1 << 20),
-                seconds: arguments.seconds,
+                work_s: arguments.seconds,
             },
             repeats: arguments.repeats,
             seed: arguments.seed,
-            threads: threads as usize,
+            engine: &engine,
             cache: &arguments.cache,
             folder: &self.folder,
         };
@@ -211,6 +216,20 @@ impl Session {
         Ok(())
     }
 
+    /// Says which strategies failed, a line each: a table that holds one has failed.
+    fn outcome(&self) -> Outcome {
+        let mut outcome = Outcome::Done;
+        for scene in &self.record.scenes {
+            for summary in scene.summaries.iter().filter(|s| !s.claim.is_external()) {
+                if let Some(error) = &summary.error {
+                    say(&format!("{}: `{}` failed: {error}", scene.name, summary.strategy));
+                    outcome = Outcome::CheckFailed;
+                }
+            }
+        }
+        outcome
+    }
+
     fn finish(&mut self) -> Result<()> {
         self.record.finished = true;
         write_run(&self.folder, &self.record)?;
@@ -225,12 +244,13 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
     let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; {} runs; seed {}; {}",
             scenes.join(" "),
             strategies.join(" "),
             peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
             arguments.budget,
             arguments.seconds,
+            RATES,
             arguments.repeats,
             arguments.seed,
             arguments.scene_options.describe()

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Receivers a tile.
-pub(super) const TILE: usize = 256;
+pub(super) const TILE: usize = 32;
 
 /// A file of finished tiles. Each record is the tile's index, its values and a checksum; a record cut short by an
 /// interruption, and whatever follows it, is dropped.
