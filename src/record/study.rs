@@ -132,6 +132,11 @@ impl Format {
         }
     }
 
+    /// Whether its cells are an end of an interval.
+    pub fn is_end(self) -> bool {
+        matches!(self, Self::Low | Self::High)
+    }
+
     /// Whether its cells are texts.
     pub fn is_text(self) -> bool {
         matches!(self, Self::Name | Self::Words)
