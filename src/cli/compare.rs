@@ -10,7 +10,7 @@ use crate::measure::engine::Engine;
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
-use crate::measure::reference::scene_hash;
+use crate::measure::reference::{WORK_S, scene_hash};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::store::{self, RowWriter, file_name, write_run};
@@ -42,6 +42,10 @@ pub(super) struct Arguments {
     /// Most counted work of a strategy in a run, in seconds at the committed rates: the same on every machine
     #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     seconds: f64,
+    /// Most counted work of the reference, in CPU seconds at the committed rates: where a scene asks for more, errors are
+    /// taken at fewer receivers
+    #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
+    reference_work: f64,
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
@@ -169,6 +173,7 @@ impl Session {
             repeats: arguments.repeats,
             seed: arguments.seed,
             engine: &engine,
+            reference_work_s: arguments.reference_work,
             cache: &arguments.cache,
             films: &self.films,
         };
@@ -254,13 +259,14 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
     let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name(), scene_hash(scene))).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}",
             scenes.join(" "),
             strategies.join(" "),
             peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
             arguments.budget,
             arguments.seconds,
             RATES,
+            arguments.reference_work,
             arguments.repeats,
             arguments.seed,
             arguments.scene_options.describe()

@@ -34,6 +34,8 @@ pub struct Options<'a> {
     pub seed: u64,
     /// Who times the runs.
     pub engine: &'a Engine<'a>,
+    /// Most counted work of the reference, in nominal CPU seconds.
+    pub reference_work_s: f64,
     /// Folder of cached references.
     pub cache: &'a Path,
     /// Where the last image of each finished run is kept.
@@ -62,14 +64,15 @@ pub fn compare<'a>(
     rows: &mut RowWriter,
     watch: &dyn Observer,
 ) -> Result<Compared<'a>> {
-    let target = Target::whole(stage);
-    let pilots = pilots(&target, options, watch)?;
+    let frame = Target::whole(stage);
+    let pilots = pilots(&frame, options, watch)?;
     let ladder = |pilot: &Option<Trial>| {
         let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
         pilot.map_or_else(Vec::new, |pilot| pilot.ladder(options.budget, options.repeats))
     };
     let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
-    let reference = Reference::compute(&target, accuracy(options, &pilots, &ladders), options.cache, watch)?;
+    let accuracy = accuracy(options, &pilots, &ladders);
+    let (target, reference) = Reference::bounded(&frame, accuracy, options.reference_work_s, options.cache, watch)?;
 
     let strategies: Vec<&Configured> = options.strategies.iter().collect();
     let experiment = Experiment {
