@@ -45,6 +45,7 @@ impl Errors {
             rel_mse: self.rel_mse,
             rel_mse_trimmed: self.rel_mse_trimmed,
             trimmed_share: self.trimmed_share,
+            largest: self.largest,
             energy_ratio: self.energy_ratio,
             deciles: self.deciles,
             ..row
