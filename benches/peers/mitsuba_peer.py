@@ -76,8 +76,8 @@ def main():
             "one light sample and one shadow ray a sample, lights chosen uniformly by shape: all triangles of one "
             "radiance are one shape; independent random numbers",
             "CPU s are those of the process, one thread, each image rendered in one block, which begins with tracing its "
-            "program in Python. Set-up is loading, building and compiling, what a first image takes beyond the same image "
-            f"made again, without the start of Python{slow}",
+            "program in Python. Set-up is loading, building and compiling, unless Dr.Jit has the program in its cache on disk: "
+            f"what a first image takes beyond the same image made again, without the start of Python{slow}",
         ],
     )
     if not arguments.seeds:
