@@ -180,13 +180,20 @@ impl Block<'_> {
         let (sampler, setup) = meter.time(|| strategy.build(context));
         let sampler = sampler?;
         let plan = Plan { stage, receivers, sampler: sampler.as_ref(), key };
-        let (film, sampling) = meter.time(|| {
-            let mut film = Film::new(receivers.len());
-            plan.run(passes, &mut film);
-            film
-        });
-        Ok(Done { setup, sampling, heap_bytes: sampler.heap_bytes() as u64, image: film.image() })
+        let (image, sampling) = sample(&plan, passes, meter);
+        Ok(Done { setup, sampling, heap_bytes: sampler.heap_bytes() as u64, image })
     }
+}
+
+/// Does all passes of a sampler that is there already in one block; the image of the plan's receivers, and what arriving
+/// and sampling took.
+pub fn sample(plan: &Plan<'_>, passes: u32, meter: Meter<'_>) -> (Vec<Vec3>, Spent) {
+    let (film, spent) = meter.time(|| {
+        let mut film = Film::new(plan.receivers.len());
+        plan.run(passes, &mut film);
+        film
+    });
+    (film.image(), spent)
 }
 
 impl Done {

@@ -75,6 +75,11 @@ impl Truth {
         &self.mean
     }
 
+    /// How squared errors are weighed.
+    pub fn relative(&self) -> RelMse {
+        self.relative
+    }
+
     /// The epsilon of relMSE, per channel.
     pub fn epsilon(&self) -> Vec3 {
         self.relative.epsilon()

@@ -2,8 +2,7 @@
 //!
 //! One [`Target`](target::Target) a scene holds the receivers and the exact image. A strategy must pass a `gate` of
 //! quick checks. A [`Pilot`](plan::Pilot) says how far each strategy can go within its budget. [`compare`] runs all of
-//! it, interleaved, and hands out rows as they come; [`trials`] answer the smaller question of an experiment: how good
-//! at one budget?
+//! it, interleaved, and hands out rows as they come. The [`engine`] alone reads a clock for a strategy.
 
 pub mod clock;
 pub mod compare;

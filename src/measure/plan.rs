@@ -61,7 +61,7 @@ pub struct Pilot {
 }
 
 /// Receivers of a pilot's errors.
-pub(super) const RECEIVERS: usize = 512;
+pub const RECEIVERS: usize = 512;
 
 /// Work is counted at so many squares of the frame, of [`SQUARE`] neighbours each: a strategy may share what it does
 /// among neighbours.

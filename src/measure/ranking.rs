@@ -3,7 +3,7 @@
 use super::figure::Figure;
 
 /// Where a row stands.
-pub struct Place {
+pub(super) struct Place {
     /// First and last rank that the runs allow.
     pub rank: [u32; 2],
     /// Shared with every row that it is not told apart from.
@@ -11,6 +11,6 @@ pub struct Place {
 }
 
 /// The places of rows by a figure of which less is better.
-pub fn places(figures: &[Figure]) -> Vec<Place> {
+pub(super) fn places(figures: &[Figure]) -> Vec<Place> {
     figures.iter().map(|_| Place { rank: [1, figures.len() as u32], letters: "a".into() }).collect()
 }

@@ -1,13 +1,22 @@
-//! The exact image, computed once and kept.
+//! The exact image, within a bound of work, computed once and kept.
+//!
+//! Why exact to a hundredth of the best row's error: errors are means of `(x - first half)(x - second half)`, which the
+//! reference's own noise biases nowhere; it only widens them, and at a hundredth by nothing that can be seen.
+//!
+//! Where a scene asks for more work than the bound, fewer receivers are measured, as exactly; only where even
+//! [`FEWEST`] are too many is the image less exact, and its own relMSE says so.
 
 use super::errors::Truth;
 use super::observer::Observer;
 use super::target::Target;
 use super::tiles::{self, TileFile};
 use crate::base::error::{Error, Result};
-use crate::render::exact::{Exact, exact};
+use crate::base::rel_mse::RelMse;
+use crate::render::exact::Exact;
+use crate::render::refined::{FALL, Price, refined};
 use crate::scene::Scene;
 use crate::scene::light::Kind;
+use crate::scene::receiver::Receiver;
 use crate::visibility::stage::Stage;
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -17,70 +26,112 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// An exact image and how it came to be.
 pub struct Reference {
-    /// The truth at the target's receivers.
+    /// The truth at the target's measured receivers.
     pub truth: Truth,
     /// Whether it is a sum without noise.
     pub exact_sum: bool,
-    /// Shadow rays cast.
+    /// Shadow rays cast, those included that said how many are needed.
     pub rays: u64,
+    /// Counted work of all that, in nominal CPU seconds: see [`RAY_S`].
+    pub work_s: f64,
     /// CPU seconds spent now; 0 where all came from the cache.
     pub cpu_s: f64,
     /// Whether all of it came from the cache.
     pub cached: bool,
 }
 
-/// Points beyond which a stratified reference is not refined.
-const MOST_POINTS: u32 = 1 << 18;
+/// Nominal CPU seconds of a shadow ray to a point of a light, all around it included.
+pub const RAY_S: f64 = 230e-9;
 
-/// Points a receiver and half to begin with.
-const FIRST_POINTS: u32 = 64;
+/// Nominal CPU seconds of coming past a light at a receiver, whether or not it can add anything.
+pub const LIGHT_S: f64 = 20e-9;
 
-/// Part of the hash: to be raised whenever `render::exact` gives other numbers.
-const VERSION: u32 = 1;
+/// Work of a reference where nobody says otherwise, in nominal CPU seconds: a minute of two cores.
+pub const WORK_S: f64 = 120.0;
+
+/// Receivers that are always measured, where there are so many.
+pub const FEWEST: usize = 256;
+
+/// Part of the hash: to be raised whenever `render::refined` gives other numbers.
+const VERSION: u32 = 2;
+
+/// Names the reference's random numbers; never a run's.
+const SEED: u64 = 0x7265_6665_7265_6e63;
 
 impl Reference {
-    /// The exact image of a target, from `cache` where it is there.
-    ///
-    /// Triangles are sampled until the reference's own relMSE is at most `own_rel_mse`; a pilot on a few receivers says
-    /// how many points that takes.
+    /// The exact image of a target, from `cache` where it is there, until its own relMSE is at most `own_rel_mse`,
+    /// however long that takes.
     pub fn compute(target: &Target<'_>, own_rel_mse: f64, cache: &Path, watch: &dyn Observer) -> Result<Self> {
-        if !has_triangles(target.stage) {
-            return Self::level(target, 0, cache, watch);
-        }
-        let mut points = FIRST_POINTS;
+        Ok(Self::bounded(target, own_rel_mse, f64::INFINITY, cache, watch)?.1)
+    }
+
+    /// The exact image of a target, or of as many of its measured receivers as `work_s` nominal CPU seconds allow, and
+    /// which those are.
+    ///
+    /// Few receivers say which price of a ray leads to the relMSE, and what a receiver then takes; how many can be
+    /// measured follows. Work is counted, not timed: every machine comes to the same receivers.
+    pub fn bounded<'a>(
+        target: &Target<'a>,
+        own_rel_mse: f64,
+        work_s: f64,
+        cache: &Path,
+        watch: &dyn Observer,
+    ) -> Result<(Target<'a>, Self)> {
+        let mut measured = target.thinned(FEWEST);
+        let mut step = Step { halvings: 0, relative: RelMse::default() };
+        let mut earlier = None;
         loop {
-            let pilot = target.thinned(PILOT);
-            let own = Self::level(&pilot, points, cache, watch)?.truth.own_rel_mse();
-            if own > own_rel_mse && points < MOST_POINTS {
-                points = (points * next_factor(own / own_rel_mse)).min(MOST_POINTS);
-                continue;
-            }
-            let reference = Self::level(target, points, cache, watch)?;
+            let reference = Self::level(&measured, step, cache, watch)?;
+            let receivers = measured.places.len().max(1) as f64;
+            let each = reference.work_s / receivers;
+            let reference = reference.after(earlier);
             let own = reference.truth.own_rel_mse();
-            if own <= own_rel_mse || points >= MOST_POINTS {
-                return Ok(reference);
+            let left = work_s - reference.work_s;
+            let all = measured.places.len() == target.places.len();
+            // Few receivers say what all will come to only about.
+            let missing = own / if all { own_rel_mse } else { ROOM * own_rel_mse };
+            if missing > 1.0 {
+                let most = step.affordable(left / receivers / each);
+                let wanted = step.refined(missing, own_rel_mse, &reference);
+                // More receivers than the fewest are not sampled twice for a part of what is missing.
+                let next = wanted.halvings.min(most);
+                let worth = next == wanted.halvings || measured.places.len() <= FEWEST;
+                if next <= step.halvings || !worth {
+                    return Ok((measured, reference));
+                }
+                step = Step { halvings: next, ..wanted };
+            } else {
+                let affordable = target.thinned((left / each).min(target.places.len() as f64) as usize);
+                if affordable.places.len() <= measured.places.len() {
+                    return Ok((measured, reference));
+                }
+                measured = affordable;
             }
-            points = (points * next_factor(own / own_rel_mse)).min(MOST_POINTS);
+            earlier = Some(reference);
         }
     }
 
-    fn level(target: &Target<'_>, points: u32, cache: &Path, watch: &dyn Observer) -> Result<Self> {
-        let measured = target.measured();
+    /// The image at one price of a ray.
+    fn level(target: &Target<'_>, step: Step, cache: &Path, watch: &dyn Observer) -> Result<Self> {
+        let (stage, measured) = (target.stage, target.measured());
         let n = measured.len();
-        let (file, mut tiles) = TileFile::open(cache, &name(target, points), n)?;
+        let (file, mut tiles) = TileFile::open(cache, &name(stage, &measured, step), n)?;
         let missing: Vec<usize> = (0..tiles.len()).filter(|&tile| tiles[tile].is_none()).collect();
         let spent = AtomicU64::new(0);
         if !missing.is_empty() {
-            watch.begin("reference", missing.len() as u64);
+            watch.begin("reference", missing.iter().map(|&tile| tiles::range(tile, n).len() as u64).sum());
             let file = Mutex::new(file);
-            let done = missing.par_iter().map(|&tile| {
+            let one = |at: &Receiver| {
                 watch.check()?;
                 let clock = ThreadTime::now();
-                let receivers = &measured[tiles::range(tile, n)];
-                let values: Vec<Exact> = receivers.iter().map(|at| exact(target.stage, at, points, SEED)).collect();
+                let value = refined(stage, at, step.price(), SEED);
                 spent.fetch_add(clock.elapsed().as_nanos() as u64, Ordering::Relaxed);
-                file.lock().map_err(|_| Error::Interrupted)?.append(tile, &values)?;
                 watch.advance(1);
+                Ok(value)
+            };
+            let done = missing.par_iter().map(|&tile| {
+                let values = measured[tiles::range(tile, n)].par_iter().map(one).collect::<Result<Vec<Exact>>>()?;
+                file.lock().map_err(|_| Error::Interrupted)?.append(tile, &values)?;
                 Ok((tile, values))
             });
             let done: Result<Vec<(usize, Vec<Exact>)>> = done.collect();
@@ -89,40 +140,87 @@ impl Reference {
         }
         let values: Vec<Exact> = tiles.into_iter().flatten().flatten().collect();
         let half = |i: usize| values.iter().map(|v| (v.sum + v.halves[i]).as_vec3()).collect();
+        let rays = values.iter().map(|v| v.rays).sum();
+        let lights = stage.scene().lights();
         Ok(Self {
             truth: Truth::new([half(0), half(1)]),
-            exact_sum: !has_triangles(target.stage),
-            rays: values.iter().map(|v| v.rays).sum(),
+            exact_sum: !lights.iter().any(|light| light.kind() == Kind::Triangle),
+            rays,
+            work_s: rays as f64 * RAY_S + (n * lights.len()) as f64 * LIGHT_S,
             cpu_s: spent.into_inner() as f64 * 1e-9,
             cached: missing.is_empty(),
         })
     }
+
+    /// The same with what earlier levels took.
+    fn after(self, earlier: Option<Self>) -> Self {
+        let Some(earlier) = earlier else { return self };
+        Self {
+            rays: self.rays + earlier.rays,
+            work_s: self.work_s + earlier.work_s,
+            cpu_s: self.cpu_s + earlier.cpu_s,
+            cached: self.cached && earlier.cached,
+            ..self
+        }
+    }
 }
 
-/// Receivers of the pilot that chooses the number of points.
-const PILOT: usize = 512;
-
-/// Names the reference's random numbers; never a run's.
-const SEED: u64 = 0x7265_6665_7265_6e63;
-
-/// How many times more points bring the noise down by `excess`. Stratified noise falls faster than 1/n; 1/n is safe.
-fn next_factor(excess: f64) -> u32 {
-    (excess * 1.3).ceil().clamp(2.0, 64.0) as u32
+/// A price of a ray, in powers of two: exact on every machine, and met again by the next comparison of the scene.
+#[derive(Clone, Copy)]
+struct Step {
+    /// relMSE that a ray must take away, as a power of 1/2.
+    halvings: u32,
+    relative: RelMse,
 }
 
-fn has_triangles(stage: &Stage) -> bool {
-    stage.scene().lights().iter().any(|light| light.kind() == Kind::Triangle)
+/// The share of the wanted relMSE that few receivers must reach before more are sampled.
+const ROOM: f64 = 0.8;
+
+/// The relMSE of the first step that has an epsilon: it costs little, and what follows it need not guess.
+const EASY: f64 = 1e-4;
+
+/// Most halvings in one step: sixteen times the rays.
+const STRIDE: u32 = 10;
+
+/// Halvings at which every grid has all the points it may have.
+const FINEST: u32 = 64;
+
+impl Step {
+    fn price(self) -> Price {
+        Price { relative: self.relative, a_ray: 0.5f64.powi(self.halvings as i32) }
+    }
+
+    /// The step that takes the relMSE down by `missing`: it falls as the price to the power `FALL / (FALL + 1)`.
+    fn refined(self, missing: f64, own_rel_mse: f64, found: &Reference) -> Self {
+        if self.halvings == 0 {
+            // At any price the image's relMSE is that times the rays of a receiver, over FALL.
+            let rays = found.rays as f64 / found.truth.mean().len() as f64;
+            let halvings = (rays / (FALL * own_rel_mse.max(EASY))).log2().ceil();
+            return Self { halvings: (halvings as u32).clamp(1, FINEST), relative: found.truth.relative() };
+        }
+        let halvings = (missing.log2() * (FALL + 1.0) / FALL).ceil();
+        Self { halvings: (self.halvings + (halvings as u32).clamp(1, STRIDE)).min(FINEST), ..self }
+    }
+
+    /// The most halvings, if a receiver may take so many times as much work as it did: rays grow as the price to the
+    /// power `-1 / (FALL + 1)`, at most.
+    fn affordable(self, times: f64) -> u32 {
+        let halvings = (times.log2() * (FALL + 1.0)).floor();
+        // A negative number becomes 0.
+        self.halvings + halvings.min(f64::from(FINEST)) as u32
+    }
 }
 
-/// The file name of a reference: a hash of all that decides it.
-fn name(target: &Target<'_>, points: u32) -> String {
+/// The file name of a level: a hash of all that decides it.
+fn name(stage: &Stage, receivers: &[Receiver], step: Step) -> String {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(scene_hash(target.stage.scene()).as_bytes());
-    hasher.update(format!("{VERSION} {:?} {points}", target.stage.offset()).as_bytes());
-    target.places.iter().map(|&i| &target.frame[i]).for_each(|at| {
+    hasher.update(scene_hash(stage.scene()).as_bytes());
+    let Price { relative, a_ray } = step.price();
+    hasher.update(format!("{VERSION} {:?} {a_ray:e} {}", stage.offset(), relative.epsilon()).as_bytes());
+    receivers.iter().for_each(|at| {
         hasher.update(&at.pixel.to_le_bytes());
     });
-    hasher.finalize().to_hex()[..32].to_owned()
+    hasher.finalize().to_hex().to_string()
 }
 
 /// The content hash that names a scene: 32 hexadecimal digits.

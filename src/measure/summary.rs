@@ -3,7 +3,9 @@
 use super::errors::Truth;
 use super::experiment::Runs;
 use super::figure::{CONFIDENCE, Figure};
+use super::plan::Pilot;
 use super::spread::{Parts, Spread};
+use crate::base::error::Result;
 use crate::base::statistics::Moments;
 use crate::record::{Claim, Counts, Interval, Point, Row, Summary};
 use crate::render::counts as render;
@@ -21,6 +23,31 @@ pub fn blank(strategy: &Configured) -> Summary {
         (Role::Choosing, StrategyClaim::Biased(why)) => Claim::Biased { why: why.to_owned() },
     };
     Summary::blank(strategy.name().to_owned(), claim, info.role == Role::Choosing)
+}
+
+/// The summary of a strategy from its pilot, or why there is none, and its runs; without a pilot, of one that is not run
+/// against the clock.
+pub fn of(
+    strategy: &Configured,
+    pilot: Option<&Result<Pilot>>,
+    ladder: &[u32],
+    runs: &Runs,
+    truth: &Truth,
+) -> (Summary, Jackknife) {
+    let mut begun = blank(strategy);
+    match pilot {
+        Some(Err(error)) => begun.error = Some(error.to_string()),
+        Some(Ok(pilot)) if ladder.is_empty() => {
+            begun.skipped = Some(format!("skipped: one pass is {:.2} s of counted work", pilot.work_s(1)));
+        }
+        Some(Ok(pilot)) => begun.counts = counts(pilot.counts),
+        None => {}
+    }
+    let (mut summary, jackknife) = summarise(begun, truth, runs, ladder);
+    if let Some(error) = runs.rows.iter().find_map(|row| row.error.clone()) {
+        summary.error = Some(error);
+    }
+    (summary, jackknife)
 }
 
 /// Bias and variance of a strategy's runs at its largest budget: from all of them, and without each in turn.

@@ -69,6 +69,11 @@ impl Row {
         Self { error: Some(error), ..Self::blank(scene, strategy, run, passes) }
     }
 
+    /// CPU seconds from nothing to the image.
+    pub fn total_cpu_s(&self) -> f64 {
+        self.setup_cpu_s + self.cpu_s
+    }
+
     /// A row without its numbers yet.
     pub fn blank(scene: String, strategy: String, run: u32, passes: u32) -> Self {
         let none = f64::NAN;
@@ -89,6 +94,11 @@ impl Row {
             deciles: [none; 10],
             error: None,
         }
+    }
+
+    /// What tells it apart from all others of a comparison: scene, strategy, run and passes.
+    pub fn key(&self) -> (&str, &str, u32, u32) {
+        (&self.scene, &self.strategy, self.run, self.passes)
     }
 
     /// The row's fields in the order of [`COLUMNS`]. Line breaks in texts become spaces: a row is one line.

@@ -8,7 +8,7 @@ use super::{Machine, number};
 use serde::{Deserialize, Serialize};
 
 /// Version of the files' layout; files of another version are refused.
-pub const STUDY_SCHEMA: u32 = 1;
+pub const STUDY_SCHEMA: u32 = 2;
 
 /// One run of one study: everything in `study.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,8 +22,15 @@ pub struct StudyRecord {
     pub question: String,
     /// The command line.
     pub command: String,
+    /// All that decides the cells, in canonical form: content of the scenes, strategies, options. An interrupted study is
+    /// resumed only by one that asks for the same. Empty in records that are older than this field.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,
+    /// The crate's version; empty in records that are older than this field.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
     /// Revision of the source.
     pub revision: String,
     /// The user's seed.
@@ -38,7 +45,7 @@ pub struct StudyRecord {
     pub warnings: Vec<String>,
     /// Whether it came to its end; otherwise some rows are missing.
     pub finished: bool,
-    /// Wall seconds that it took; 0 before its end.
+    /// Wall seconds that it took, of one that was resumed its last part; 0 before its end.
     #[serde(with = "number")]
     pub wall_s: f64,
     /// What a reader must know of all tables: how it was measured, what was left out and why.
@@ -108,8 +115,10 @@ pub enum Format {
     Milliseconds,
     /// Seconds, in nanoseconds.
     Nanoseconds,
-    /// Half of the 95 % interval of the number or share in the column before, shown with it.
-    HalfWidth,
+    /// The lower end of the 95 % interval of the number in the column before, in its unit, shown with it.
+    Low,
+    /// The upper end, in the column after the lower.
+    High,
 }
 
 impl Format {
@@ -121,6 +130,11 @@ impl Format {
             Cell::Whole(_) => self.is_whole(),
             Cell::Number(_) => !self.is_text() && !self.is_whole(),
         }
+    }
+
+    /// Whether its cells are an end of an interval.
+    pub fn is_end(self) -> bool {
+        matches!(self, Self::Low | Self::High)
     }
 
     /// Whether its cells are texts.

@@ -37,9 +37,7 @@ impl Exact {
 pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     let mut result = Exact::default();
     let lights = stage.scene().lights();
-    for light in lights.iter().filter(|light| light.kind() != Kind::Triangle) {
-        result.sum += shadowed(stage, LightSampling::Area, at, light, [0.0; 2], &mut result.rays);
-    }
+    result.sum = deltas(stage, at, &mut result.rays);
     let total: f64 = triangles(lights).map(|light| f64::from(importance(light, at))).sum();
     if total <= 0.0 {
         return result;
@@ -56,6 +54,12 @@ pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     result
 }
 
+/// What all lights but triangles add: a sum without noise.
+pub(super) fn deltas(stage: &Stage, at: &Receiver, rays: &mut u64) -> DVec3 {
+    let deltas = stage.scene().lights().iter().filter(|light| light.kind() != Kind::Triangle);
+    deltas.fold(DVec3::ZERO, |sum, light| sum + shadowed(stage, LightSampling::Area, at, light, [0.0; 2], rays))
+}
+
 fn triangles(lights: &[Light]) -> impl Iterator<Item = &Light> {
     lights.iter().filter(|light| light.kind() == Kind::Triangle)
 }
@@ -69,14 +73,27 @@ pub fn grid_side(points: u32, share: f64) -> u32 {
 ///
 /// By area, however the stage draws its points: what judges those must not share their arithmetic.
 pub fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
-    let step = 1.0 / side as f32;
     let mut sum = DVec3::ZERO;
+    grid(stage, at, light, side, rng, rays, |value| sum += value);
+    sum / f64::from(side * side)
+}
+
+/// Each contribution of such a grid, row by row.
+pub(super) fn grid(
+    stage: &Stage,
+    at: &Receiver,
+    light: &Light,
+    side: u32,
+    rng: &mut Stream,
+    rays: &mut u64,
+    mut each: impl FnMut(DVec3),
+) {
+    let step = 1.0 / side as f32;
     for cell in 0..side * side {
         let [u, v] = rng.uniform2();
         let uv = [((cell % side) as f32 + u) * step, ((cell / side) as f32 + v) * step];
-        sum += shadowed(stage, LightSampling::Area, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays);
+        each(shadowed(stage, LightSampling::Area, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays));
     }
-    sum / f64::from(side * side)
 }
 
 /// The contribution of a point of a light that is drawn `by` a way, shadow ray included.

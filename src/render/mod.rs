@@ -9,3 +9,4 @@ pub mod film;
 pub mod kernel;
 pub mod passes;
 pub mod picture;
+pub mod refined;

@@ -26,7 +26,7 @@ use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use crate::record::study::Study;
 use crate::record::study_store::{is_study, read_study};
-use crate::record::{Row, RunRecord, store};
+use crate::record::{ResultFolder, Row, RunRecord, store};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -92,10 +92,18 @@ pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
 }
 
 /// Writes the pages and plots of a result folder again, from its raw records and rows; gives their paths.
+///
+/// A folder without a record of a comparison or a study is refused, as is one that another process writes in.
 pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
+    let _held = ResultFolder::hold(folder)?;
     let files = read(folder)?;
-    files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))?;
+    write(folder, &files)?;
     Ok(files.into_iter().map(|file| folder.join(file.name)).collect())
+}
+
+/// Writes derived files into a result folder.
+pub fn write(folder: &Path, files: &[Derived]) -> Result<()> {
+    files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))
 }
 
 /// A derived file that is not what the raw rows say.

@@ -94,7 +94,7 @@ fn sheets(study: &Study) -> impl Iterator<Item = Sheet> {
 fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
     // A column that says nothing in any row is left out.
     let is_empty = |at: usize| !rows.is_empty() && rows.iter().all(|cells| cells[at] == Cell::Missing);
-    let is_shown = |(at, column): &(usize, &ColumnRecord)| column.format != Format::HalfWidth && !is_empty(*at);
+    let is_shown = |(at, column): &(usize, &ColumnRecord)| !column.format.is_end() && !is_empty(*at);
     let shown = || table.columns.iter().enumerate().filter(is_shown);
     let heads = shown().map(|(_, column)| match column.format.is_text() {
         true => Head::left(&column.head),
@@ -106,21 +106,19 @@ fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
     let mut group = 0;
     let lines = rows.iter().enumerate().map(|(at, cells)| {
         group += u32::from(grouped && !same(at));
-        Line {
-            cells: shown().map(|(i, column)| entry(column, &cells[i], half_width(table, cells, i))).collect(),
-            group,
-        }
+        Line { cells: shown().map(|(i, column)| entry(column, &cells[i], ends(table, cells, i))).collect(), group }
     });
     Sheet { title: table.title.clone(), heads: heads.collect(), lines: lines.collect(), below: table.notes.clone() }
 }
 
-/// The half width that stands beside the column at `at`, if there is one.
-fn half_width(table: &TableRecord, cells: &[Cell], at: usize) -> Option<f64> {
-    let next = table.columns.get(at + 1).filter(|column| column.format == Format::HalfWidth);
-    next.and_then(|_| cells[at + 1].number())
+/// The ends of the interval of the number in the column at `at`, if it has one.
+fn ends(table: &TableRecord, cells: &[Cell], at: usize) -> Option<(f64, f64)> {
+    let has_ends = table.columns.get(at + 1).is_some_and(|column| column.format == Format::Low);
+    let end = |at: usize| cells.get(at).and_then(Cell::number);
+    has_ends.then(|| end(at + 1).zip(end(at + 2)))?
 }
 
-fn entry(column: &ColumnRecord, cell: &Cell, half_width: Option<f64>) -> Entry {
+fn entry(column: &ColumnRecord, cell: &Cell, ends: Option<(f64, f64)>) -> Entry {
     let text = match (cell, column.format) {
         (Cell::Missing, format) if format.is_text() => String::new(),
         (Cell::Missing, _) => NONE.to_owned(),
@@ -128,14 +126,14 @@ fn entry(column: &ColumnRecord, cell: &Cell, half_width: Option<f64>) -> Entry {
         (Cell::Text(text), _) => text.clone(),
         (Cell::Whole(count), Format::Bytes) => bytes(*count),
         (Cell::Whole(count), _) => grouped(*count),
-        (Cell::Number(mean), format) => match (format, half_width) {
-            (Format::Percent, Some(half_width)) => {
-                Estimate::signed_percent(Interval::symmetric(*mean, half_width)).line()
-            }
+        (Cell::Number(mean), format) => match (format, ends.map(|ends| Interval::of(*mean, ends))) {
+            (Format::Percent, Some(share)) => Estimate::signed_percent(share).line(),
             (Format::Percent, None) => percent(*mean, 1.0),
-            (Format::Milliseconds, _) => short(1e3 * mean),
-            (Format::Nanoseconds, _) => short(1e9 * mean),
-            (_, Some(half_width)) => Estimate::of(Interval::symmetric(*mean, half_width)).line(),
+            (Format::Milliseconds, Some(seconds)) => Estimate::of(seconds.times(1e3)).line(),
+            (Format::Milliseconds, None) => short(1e3 * mean),
+            (Format::Nanoseconds, Some(seconds)) => Estimate::of(seconds.times(1e9)).line(),
+            (Format::Nanoseconds, None) => short(1e9 * mean),
+            (_, Some(interval)) => Estimate::of(interval).line(),
             (_, None) => short(*mean),
         },
     };
@@ -156,14 +154,13 @@ fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotR
     let own = (plot.y.column.as_str(), "");
     let beside = plot.beside.iter().map(|(column, adds)| (column.as_str(), adds.as_str()));
     for (column, adds) in std::iter::once(own).chain(beside) {
-        let width = table.column(column).filter(|at| table.columns.get(at + 1).is_some_and(is_half_width));
+        let at = table.column(column);
         for (nth, name) in names.iter().enumerate() {
             let of_series = |cells: &&Cells| cell(cells, &plot.series).is_some_and(|cell| label(&cell) == *name);
             let dot = |cells: &Cells| {
                 let value = |column: &str| cell(cells, column).and_then(|cell| cell.number());
-                let half_width = width.and_then(|at| cells[at + 1].number()).unwrap_or(f64::NAN);
-                let y = value(column)?;
-                Some(Dot { x: value(&plot.x.column)?, y, low: y - half_width, high: y + half_width })
+                let (low, high) = at.and_then(|at| ends(table, cells, at)).unwrap_or((f64::NAN, f64::NAN));
+                Some(Dot { x: value(&plot.x.column)?, y: value(column)?, low, high })
             };
             let points = rows.iter().filter(of_series).filter_map(dot);
             let points = points.filter(|dot| x.shows(dot.x) && y.shows(dot.y)).collect();
@@ -178,10 +175,6 @@ fn chart(record: &StudyRecord, table: &TableRecord, rows: &[Cells], plot: &PlotR
         false => Vec::new(),
     };
     Chart { title: plot.title.clone(), subtitle, x, y, series, remarks }
-}
-
-fn is_half_width(column: &ColumnRecord) -> bool {
-    column.format == Format::HalfWidth
 }
 
 /// The name of the curve of a cell's value.

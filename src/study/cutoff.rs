@@ -7,17 +7,14 @@
 use super::area::by_area;
 use super::plane::{closed_form, plane};
 use super::quality::unshadowed;
-use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
-use super::timing::{self, Timing};
+use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::trial::{Budgets, Trial, Tried};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::errors::Truth;
-use crate::measure::plan::Budget;
-use crate::measure::target::Target;
-use crate::measure::trials::Trials;
+use crate::measure::target::{Target, spread};
 use crate::record::study::{Cell, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::record::{Interval, Summary};
 use crate::render::exact::exact;
 use crate::scene::camera::Camera;
 use crate::scene::city::buildings::Buildings;
@@ -68,14 +65,14 @@ fn run(session: &Session<'_>) -> Result<Study> {
         .collect();
     let mut tables = vec![law_table()];
     tables.extend(OPENNESS.map(|(name, title)| bias_table(session, name, title, &biased)));
-    let mut writer = session.open(tables)?;
+    let mut writer = session.open([], tables)?;
     for lights in sizes(FEWEST, session.options.max_lights) {
         in_the_plane(session, &mut writer, &strategies, lights)?;
         if lights <= MOST_IN_CITIES {
             in_the_city(session, &mut writer, &strategies, lights)?;
         }
     }
-    writer.note("All lights are points: the truth is an exact sum over all of them, a shadow ray each.".into());
+    writer.note("All lights are points: the truth is an exact sum over all of them, a shadow ray each.".into())?;
     writer.note(format!(
         "Cities: street lamps alone, bare points 30 m apart, 5,000 to 9,000 lm, EV100 {EV100}; receivers by area, half on streets, half on \
          facades, which stay where they are where the buildings are taken away."
@@ -132,16 +129,14 @@ fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String])
         column("claim", "claim", Format::Words),
         column("passes", "passes", Format::Whole),
         column("picks_a_sample", "picks\na sample", Format::Number),
-        column("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds),
     ];
+    columns.extend(interval("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds));
     columns.extend(interval("lost_share", "light lost,\n%", Format::Percent));
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
     columns.extend(interval("rel_bias2", "b²", Format::Number));
-    columns.extend([
-        column("variance_cpu_s", "V", Format::Number),
-        column("balance_cpu_s", "t*, s", Format::Number),
-        column("remark", "", Format::Words),
-    ]);
+    columns.extend(interval("variance_cpu_s", "V", Format::Number));
+    columns.extend(interval("balance_cpu_s", "t*, s", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     let curves = |what: &str, title: String, y: (&str, &str)| -> PlotRecord {
         let mut plot = plot(&format!("{name}-{what}"), &title, "strategy", ("lights", "lights"), y);
         plot.biased = biased.to_vec();
@@ -156,12 +151,15 @@ fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String])
         columns,
         notes: vec![
             format!(
-                "{} receivers, {} runs of {} passes each (fewer where they take more than {} CPU s).",
-                options.pixels, options.repeats, options.passes, options.seconds
+                "{} runs of up to {} passes (1, 4, 16 and so on, within {} s of counted work) of a frame of {FRAME} receivers; errors at {} of \
+                 them. CPU ns a sample: coming to a receiver included, set-up not.",
+                options.repeats,
+                options.passes,
+                options.seconds,
+                session.pixels(PIXELS)
             ),
-            "b² is squared bias in units of relMSE, V variance x CPU seconds; from t* = V / b² on, bias outweighs noise (0: from the start)."
+            "b² is squared bias in units of relMSE, V variance x CPU seconds of the frame; from t* = V / b² on, bias outweighs noise (0: from the start)."
                 .into(),
-            timing::note("a frame of 240 x 135 pixels"),
         ],
         plots: vec![lost, time],
     }
@@ -169,8 +167,9 @@ fn bias_table(session: &Session<'_>, name: &str, title: &str, biased: &[String])
 
 /// The law and the strategies in the plane.
 fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[Configured], lights: u64) -> Result<()> {
-    let plane = plane(lights, session.options.pixels, session.options.seed)?;
+    let plane = plane(lights, FRAME, session.options.seed)?;
     let stage = Stage::new(plane.scene, LeaveOut::No, Offset::SCALED);
+    let some = spread(&plane.receivers, session.pixels(PIXELS));
     for (steps, transfer) in CUTOFFS {
         session.watch.check()?;
         let slope = if transfer == Transfer::Srgb { 12.92 } else { 1.0 };
@@ -179,8 +178,7 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
         let sampler = strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?;
         let range = Cutoff::new(stage.scene(), steps, transfer).volume(&stage.scene().lights()[0]);
         let range = range.map_or(f64::INFINITY, |volume| f64::from(volume.radius2).sqrt());
-        let lost: Vec<[f64; 3]> = plane
-            .receivers
+        let lost: Vec<[f64; 3]> = some
             .par_iter()
             .map_init(Vec::new, |counts, at| {
                 counts.clear();
@@ -211,7 +209,7 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
             ],
         )?;
     }
-    try_all(session, writer, OPENNESS[0].0, &stage, &plane.receivers, strategies)
+    try_all(session, writer, OPENNESS[0].0, &stage, plane.receivers, strategies)
 }
 
 /// The strategies in a city with and without its buildings.
@@ -232,13 +230,15 @@ fn in_the_city(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[Co
     if open.scene().lights() != built.scene().lights() {
         return Err(Error::Invalid("the city's lamps depend on its buildings: the two cannot be compared".into()));
     }
-    let receivers = by_area(built.scene(), built.occluders(), options.pixels, options.seed)?.receivers;
-    try_all(session, writer, OPENNESS[1].0, &open, &receivers, strategies)?;
-    try_all(session, writer, OPENNESS[2].0, &built, &receivers, strategies)
+    let receivers = by_area(built.scene(), built.occluders(), FRAME, options.seed)?.receivers;
+    try_all(session, writer, OPENNESS[1].0, &open, receivers.clone(), strategies)?;
+    try_all(session, writer, OPENNESS[2].0, &built, receivers, strategies)
 }
 
-/// Receivers of a frame that share the state of a pass: an image of 240 x 135 pixels.
+/// Receivers of a frame, which share the state of a pass: as many as an image of 240 x 135 pixels has.
 const FRAME: usize = 240 * 135;
+/// Receivers that errors are taken at.
+const PIXELS: usize = 512;
 
 /// Lights per km^2 of a city that has lamps alone, about.
 const DENSITY: f64 = 1_000.0;
@@ -266,54 +266,39 @@ fn try_all(
     writer: &mut StudyWriter,
     table: &str,
     stage: &Stage,
-    receivers: &[Receiver],
+    receivers: Vec<Receiver>,
     strategies: &[Configured],
 ) -> Result<()> {
-    let options = session.options;
     session.watch.begin(&format!("{table}: {} lights", stage.scene().lights().len()), 1);
-    let target = Target::of(stage, receivers.to_vec());
+    let target = Target::of(stage, receivers).thinned(session.pixels(PIXELS));
     let sum = |at: &Receiver| exact(stage, at, 0, 0).sum.as_vec3();
-    let sums: Vec<Vec3> = receivers.par_iter().map(sum).collect();
+    let sums: Vec<Vec3> = target.measured().par_iter().map(sum).collect();
     session.watch.end();
     let truth = Truth::new([sums.clone(), sums]);
-    let trials = Trials {
-        target: &target,
-        truth: &truth,
-        budget: Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds },
-        runs: options.repeats,
-        seed: options.seed,
-        threads: options.threads,
-    };
-    for (strategy, summary) in strategies.iter().zip(trials.run(&strategies.iter().collect::<Vec<_>>(), session.watch)?)
-    {
-        let timing = Timing::of(&trials, strategy, &summary, FRAME)?;
-        let mut cells = vec![(stage.scene().lights().len() as u64).into()];
-        cells.extend(bias_cells(&summary, timing, receivers.len()));
-        writer.row(table, cells)?;
+    let trial = Trial { session, target: &target, truth: &truth };
+    for tried in trial.run(&strategies.iter().collect::<Vec<_>>(), Budgets::Largest)? {
+        let mut row = vec![(stage.scene().lights().len() as u64).into()];
+        row.extend(bias_cells(&tried, &target));
+        writer.row(table, row)?;
     }
     Ok(())
 }
 
-fn bias_cells(summary: &Summary, timing: Option<Timing>, receivers: usize) -> Vec<Cell> {
-    let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
+fn bias_cells(tried: &Tried, target: &Target<'_>) -> Vec<Cell> {
+    let summary = &tried.summary;
+    let mut row = vec![summary.strategy.as_str().into(), claim(summary)];
     if measured(summary) {
-        let seconds = timing.map(|timing| timing.sample_s());
-        // V at the time that these passes take in a whole frame, for the measured receivers' share of it.
-        let share = seconds.map(|s| s * f64::from(summary.passes) * receivers as f64 / summary.cpu_s);
-        let variance = share.map(|share| summary.variance_seconds * share);
-        let lost = Interval { mean: -summary.mean_bias.mean, ..summary.mean_bias };
         let picks = summary.counts.picks as f64 / summary.counts.samples as f64;
-        cells.extend([u64::from(summary.passes).into(), picks.into(), seconds.into()]);
-        cells.extend(both(lost));
-        cells.extend(both(summary.rel_mse));
-        let is_biased = !unbiased(summary);
-        cells.extend(if is_biased { both(summary.rel_bias2) } else { [Cell::Missing, Cell::Missing] });
-        cells.push(variance.into());
-        let outweighs = is_biased && summary.rel_bias2.mean > summary.rel_bias2.half_width;
-        cells.push(variance.filter(|_| outweighs).map(|variance| variance / summary.rel_bias2.mean).into());
+        row.extend([u64::from(summary.passes).into(), picks.into()]);
+        row.extend(cells(tried.sample_s(target.frame.len())));
+        row.extend(cells(summary.mean_bias.times(-1.0)));
+        row.extend(cells(summary.rel_mse));
+        row.extend(cells((!unbiased(summary)).then_some(summary.rel_bias2)));
+        row.extend(cells(summary.variance_seconds));
+        row.extend(cells(summary.balance_s.filter(|balance| balance.mean.is_finite())));
     } else {
-        cells.resize(13, Cell::Missing);
+        row.resize(22, Cell::Missing);
     }
-    cells.push(remark(summary));
-    cells
+    row.push(remark(summary));
+    row
 }

@@ -1,10 +1,14 @@
 //! How does something grow? The power law that fits best on logarithmic axes.
 
+use crate::base::statistics::student_quantile;
+use crate::measure::figure::CONFIDENCE;
+use crate::record::Interval;
+
 /// `y = factor * x^exponent`, fitted to points by least squares of the logarithms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// The slope on logarithmic axes.
-    pub exponent: f64,
+    /// The slope on logarithmic axes, with Student's interval from how the points scatter.
+    pub exponent: Interval,
     /// What stands before the power.
     pub factor: f64,
     /// Root mean square, over the points' degrees of freedom, of ln(y / fit): 0.1 means that points lie about 10 % off.
@@ -30,7 +34,9 @@ impl PowerLaw {
         let exponent = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / spread;
         let squares: f64 = logs.iter().map(|p| (p.1 - y - exponent * (p.0 - x)).powi(2)).sum();
         let residual = (squares / (n - 2.0)).sqrt();
-        Some(Self { exponent, factor: (y - exponent * x).exp(), residual, points: logs.len() })
+        let half_width = student_quantile(0.5 + 0.5 * CONFIDENCE, logs.len() - 2) * residual / spread.sqrt();
+        let factor = (y - exponent * x).exp();
+        Some(Self { exponent: Interval::symmetric(exponent, half_width), factor, residual, points: logs.len() })
     }
 }
 
@@ -42,7 +48,7 @@ mod tests {
     #[test]
     fn a_known_law_is_recovered() {
         let law = PowerLaw::fit([10.0, 100.0, 1e3, 1e5].map(|x: f64| (x, 3.0 * x.powf(0.75)))).expect("four points");
-        assert!((law.exponent - 0.75).abs() < 1e-12 && (law.factor - 3.0).abs() < 1e-10, "{law:?}");
+        assert!((law.exponent.mean - 0.75).abs() < 1e-12 && (law.factor - 3.0).abs() < 1e-10, "{law:?}");
         assert!(law.residual < 1e-12 && law.points == 4, "{law:?}");
     }
 
@@ -53,7 +59,7 @@ mod tests {
         let points: Vec<(f64, f64)> =
             (0..2_000).map(|i| 1.01f64.powi(i)).map(|x| (x, x.powf(-1.5) * noise().exp())).collect();
         let law = PowerLaw::fit(points).expect("many points");
-        assert!((law.exponent + 1.5).abs() < 1e-3, "{law:?}");
+        assert!((law.exponent.mean + 1.5).abs() < 1e-3 && law.exponent.holds(-1.5), "{law:?}");
         // Uniform noise of width 0.2 has a standard deviation of 0.2 / sqrt(12).
         assert!((law.residual * 12f64.sqrt() / 0.2 - 1.0).abs() < 0.05, "{law:?}");
     }

@@ -5,17 +5,15 @@
 
 use super::cutoff::sizes;
 use super::fit::PowerLaw;
-use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
-use super::timing::{self, Timing};
+use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::trial::{Budgets, Trial, Tried};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
-use crate::measure::plan::Budget;
 use crate::measure::summary::blank;
-use crate::measure::target::{Target, spread};
-use crate::measure::trials::Trials;
+use crate::measure::target::Target;
+use crate::record::Claim;
 use crate::record::study::{Cell, Cells, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::record::{Claim, Summary};
 use crate::scene::file::{self, Overrides};
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
@@ -32,7 +30,11 @@ const SCENE: &str = "scenes/downtown.toml";
 const FEWEST: u64 = 100;
 
 /// Most lights that the oracle is tried among.
-const MOST_OF_ORACLE: u64 = 100_000;
+const MOST_OF_ORACLE: u64 = 10_000;
+
+/// Receivers that errors are taken at, by the number of lights from which on: heavy tails want many, and their truth takes
+/// a ray for every light.
+const PIXELS: [(u64, usize); 3] = [(1_000_000, 512), (100_000, 2_048), (0, 16_384)];
 
 /// What grows: a column of the table, what it is called, and what is written along its axis.
 const QUANTITIES: [(&str, &str, &str); 4] = [
@@ -52,24 +54,17 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
     file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
-    let mut writer = session.open(vec![growth(session, &strategies), exponents()])?;
+    let mut writer = session.open([], vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
         at_size(session, &mut writer, path, &strategies, lights)?;
     }
     for strategy in &strategies {
         for (column, what, _) in QUANTITIES {
             if let Some(law) = law(&writer, strategy, column) {
-                writer.row(
-                    "exponents",
-                    vec![
-                        strategy.name().into(),
-                        what.into(),
-                        law.exponent.into(),
-                        law.factor.into(),
-                        law.residual.into(),
-                        (law.points as u64).into(),
-                    ],
-                )?;
+                let mut row: Vec<Cell> = vec![strategy.name().into(), what.into()];
+                row.extend(cells(law.exponent));
+                row.extend([law.factor.into(), law.residual.into(), (law.points as u64).into()]);
+                writer.row("exponents", row)?;
             }
         }
     }
@@ -82,15 +77,17 @@ fn growth(session: &Session<'_>, strategies: &[Configured]) -> TableRecord {
         column("lights", "lights", Format::Whole),
         column("strategy", "strategy", Format::Name),
         column("claim", "claim", Format::Words),
-        column("setup_cpu_s", "set-up\nms", Format::Milliseconds),
+    ];
+    columns.extend(interval("setup_cpu_s", "set-up\nms", Format::Milliseconds));
+    columns.extend([
         column("heap_bytes", "memory", Format::Bytes),
         column("bytes_a_light", "bytes\na light", Format::Number),
-        column("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds),
-        column("passes", "passes", Format::Whole),
-        column("receivers", "receivers", Format::Whole),
-    ];
+    ]);
+    columns.extend(interval("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds));
+    columns.extend([column("passes", "passes", Format::Whole), column("receivers", "receivers", Format::Whole)]);
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
-    columns.extend([column("error_passes", "relMSE\nx passes", Format::Number), column("remark", "", Format::Words)]);
+    columns.extend(interval("error_passes", "relMSE\nx passes", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     let biased = strategies.iter().filter(|s| matches!(blank(s).claim, Claim::Biased { .. }));
     let biased: Vec<String> = biased.map(|s| s.name().to_owned()).collect();
     let plot = |(column, what, label): (&str, &str, &str)| PlotRecord {
@@ -109,31 +106,36 @@ fn growth(session: &Session<'_>, strategies: &[Configured]) -> TableRecord {
         columns,
         notes: vec![
             format!(
-                "{} runs of {} passes each (fewer where they take more than {} CPU s), each on one thread, set-up too.",
+                "{} runs of up to {} passes (1, 4, 16 and so on, within {} s of counted work) of all that the camera sees, each in one block on \
+                 one thread; relMSE at so many of its receivers.",
                 options.repeats, options.passes, options.seconds
             ),
+            format!(
+                "the oracle is run among {MOST_OF_ORACLE} lights or fewer, at some of the receivers, and has no time."
+            ),
             "a biased strategy has no relMSE x passes: its error does not fall as 1 / passes.".into(),
-            timing::note("all that the camera sees"),
+            "CPU ns a sample: coming to a receiver included, set-up not.".into(),
         ],
         plots: QUANTITIES.map(plot).to_vec(),
     }
 }
 
 fn exponents() -> TableRecord {
+    let mut columns = vec![column("strategy", "strategy", Format::Name), column("quantity", "of", Format::Words)];
+    columns.extend(interval("exponent", "exponent", Format::Number));
+    columns.extend([
+        column("factor", "factor", Format::Number),
+        column("residual", "residual", Format::Number),
+        column("points", "points", Format::Whole),
+    ]);
     TableRecord {
         name: "exponents".into(),
         title: "exponents of growth: y = factor x lights^exponent".into(),
-        columns: vec![
-            column("strategy", "strategy", Format::Name),
-            column("quantity", "of", Format::Words),
-            column("exponent", "exponent", Format::Number),
-            column("factor", "factor", Format::Number),
-            column("residual", "residual", Format::Number),
-            column("points", "points", Format::Whole),
-        ],
+        columns,
         notes: vec![
             "least squares on logarithmic axes, in s, bytes and relMSE; residual: root mean square of ln(y / fit), 0.1 is about 10 %."
                 .into(),
+            "an exponent's interval is that of points which scatter about a line: it grows with the residual.".into(),
             "what was measured at fewer than three sizes has none.".into(),
         ],
         plots: Vec::new(),
@@ -150,35 +152,17 @@ fn at_size(
     let options = session.options;
     let scene = file::open(path, &Overrides { lights: Some(lights), ..options.overrides.clone() })?;
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    // The truth takes a ray for every light: of many lights, at fewer receivers.
-    let pixels = match lights {
-        0..100_000 => options.pixels,
-        100_000..1_000_000 => options.pixels.min(128),
-        _ => options.pixels.min(64),
-    };
-    let target = Target::of(&stage, spread(stage.receivers(), pixels));
+    let own = PIXELS.iter().find(|(from, _)| lights >= *from).map_or(0, |(_, pixels)| *pixels);
+    let target = Target::whole(&stage).thinned(session.pixels(own));
     let reference = session.reference(&target)?;
-    let trials = Trials {
-        target: &target,
-        truth: &reference.truth,
-        budget: Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds },
-        runs: options.repeats,
-        seed: options.seed,
-        threads: options.threads,
-    };
-    // The oracle's every arrival takes as many rays as the truth, and its pilot arrives a dozen times.
-    let (tried, told): (Vec<&Configured>, Vec<&Configured>) =
-        strategies.iter().partition(|strategy| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle);
-    let skipped = told.into_iter().map(|strategy| {
-        let skipped = format!("skipped: above {MOST_OF_ORACLE} lights");
-        (strategy, Summary { skipped: Some(skipped), ..blank(strategy) })
-    });
-    let summaries = trials.run(&tried, session.watch)?;
-    for (strategy, summary) in tried.iter().copied().zip(summaries).chain(skipped) {
-        let timing = Timing::of(&trials, strategy, &summary, stage.receivers().len())?;
-        let mut cells = vec![(stage.scene().lights().len() as u64).into()];
-        cells.extend(growth_cells(&summary, timing, &target));
-        writer.row("growth", cells)?;
+    // Every arrival of the oracle takes as many rays as the truth.
+    let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle;
+    let strategies: Vec<&Configured> = strategies.iter().filter(within).collect();
+    let trial = Trial { session, target: &target, truth: &reference.truth };
+    for tried in trial.run(&strategies, Budgets::Largest)? {
+        let mut row = vec![(stage.scene().lights().len() as u64).into()];
+        row.extend(growth_cells(&tried, &target));
+        writer.row("growth", row)?;
     }
     writer.note(format!(
         "{} lights, {} of which can reach what the camera sees; the reference's own relMSE is {:.1e}.",
@@ -189,25 +173,23 @@ fn at_size(
     Ok(())
 }
 
-fn growth_cells(summary: &Summary, timing: Option<Timing>, target: &Target<'_>) -> Vec<Cell> {
-    let receivers = target.places.len();
-    let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
+fn growth_cells(tried: &Tried, target: &Target<'_>) -> Vec<Cell> {
+    let summary = &tried.summary;
+    let mut row = vec![summary.strategy.as_str().into(), claim(summary)];
     if measured(summary) {
-        cells.extend([
-            summary.setup_cpu_s.into(),
-            summary.heap_bytes.into(),
-            (summary.heap_bytes as f64 / target.stage.scene().lights().len() as f64).into(),
-            timing.map(|timing| timing.sample_s()).into(),
-            u64::from(summary.passes).into(),
-            (receivers as u64).into(),
-        ]);
-        cells.extend(both(summary.rel_mse));
-        cells.push(unbiased(summary).then(|| summary.rel_mse.mean * f64::from(summary.passes)).into());
+        row.extend(cells(summary.setup_cpu_s));
+        row.push(summary.heap_bytes.into());
+        row.push((summary.heap_bytes as f64 / target.stage.scene().lights().len() as f64).into());
+        row.extend(cells(tried.sample_s(target.frame.len())));
+        row.push(u64::from(summary.passes).into());
+        row.push(summary.receivers.unwrap_or(target.places.len() as u64).into());
+        row.extend(cells(summary.rel_mse));
+        row.extend(cells(unbiased(summary).then(|| summary.rel_mse.times(f64::from(summary.passes)))));
     } else {
-        cells.resize(11, Cell::Missing);
+        row.resize(18, Cell::Missing);
     }
-    cells.push(remark(summary));
-    cells
+    row.push(remark(summary));
+    row
 }
 
 /// How a column of a strategy's rows grows with the first, the number of lights.

@@ -6,17 +6,16 @@
 
 use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
-use super::table::{both, claim, column, interval, measured, plot, remark, unbiased};
-use super::timing::{self, Timing};
+use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::trial::{Budgets, Trial, Tried};
 use super::{Entry, Session};
 use crate::base::error::Result;
-use crate::measure::plan::Budget;
+use crate::measure::figure::{CONFIDENCE, Figure};
 use crate::measure::summary::blank;
-use crate::measure::target::{Target, spread};
-use crate::measure::trials::Trials;
-use crate::record::study::{Cell, Format, Study, TableRecord};
+use crate::measure::target::Target;
+use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::record::{Claim, Summary, store};
+use crate::record::{Claim, Interval, store};
 use crate::scene::Scene;
 use crate::scene::file;
 use crate::scene::receiver::Receiver;
@@ -35,6 +34,9 @@ pub(super) const ENTRY: Entry = Entry {
 
 /// The scenes: canyons, where visibility decides, and an open square, where it does not.
 const SCENES: [&str; 2] = ["scenes/downtown.toml", "scenes/plaza.toml"];
+
+/// Receivers that errors are taken at.
+const PIXELS: usize = 512;
 
 /// Strategies beside the registered ones in their default form.
 const VARIANTS: &[&str] = &[
@@ -59,7 +61,8 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
         files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
-    let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
+    let mut writer =
+        session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
         by_probability(session, &mut writer, scene.clone(), &strategies)?;
         by_measuring(session, &mut writer, scene, &strategies)?;
@@ -75,24 +78,28 @@ fn measured_table(scene: &Scene) -> String {
     format!("measured-{}", store::file_name(scene.name()))
 }
 
+fn quality_columns() -> Vec<ColumnRecord> {
+    let mut columns = vec![column("strategy", "strategy", Format::Name), column("claim", "claim", Format::Words)];
+    columns.extend(interval("mean_variance", "mean", Format::Number));
+    columns.push(column("median_variance", "median", Format::Number));
+    columns.extend(interval("mean_variance_street", "mean,\nstreet", Format::Number));
+    columns.extend(interval("mean_variance_facade", "mean,\nfacade", Format::Number));
+    columns.extend(interval("picks", "picks\na call", Format::Number));
+    columns.extend([
+        column("receivers", "receivers", Format::Whole),
+        column("dark_receivers", "of them dark,\nleft out", Format::Whole),
+        column("biased_receivers", "of them\nbiased", Format::Whole),
+        column("remark", "", Format::Words),
+    ]);
+    columns
+}
+
 fn tables(session: &Session<'_>, scene: &Scene, strategies: &[Configured]) -> [TableRecord; 2] {
     let options = session.options;
     let quality = TableRecord {
         name: quality_table(scene),
         title: format!("{}: variance by probabilities, nothing in between", scene.name()),
-        columns: vec![
-            column("strategy", "strategy", Format::Name),
-            column("claim", "claim", Format::Words),
-            column("mean_variance", "mean", Format::Number),
-            column("median_variance", "median", Format::Number),
-            column("mean_variance_street", "mean,\nstreet", Format::Number),
-            column("mean_variance_facade", "mean,\nfacade", Format::Number),
-            column("picks", "picks\na call", Format::Number),
-            column("receivers", "receivers", Format::Whole),
-            column("dark_receivers", "of them dark,\nleft out", Format::Whole),
-            column("biased_receivers", "of them\nbiased", Format::Whole),
-            column("remark", "", Format::Words),
-        ],
+        columns: quality_columns(),
         notes: vec![
             "relative variance of one pick: max(1, N) sum f²/n / (sum f)² - 1, where f is a light's unshadowed luminance at its \
              centroid, n its expected number of picks in a call and N = sum n. Exact for a strategy that picks once; k independent \
@@ -119,31 +126,32 @@ fn tables(session: &Session<'_>, scene: &Scene, strategies: &[Configured]) -> [T
     ];
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
     columns.extend(interval("rel_bias2", "b²", Format::Number));
-    columns.extend([
-        column("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds),
-        column("error_passes", "relMSE\nx passes", Format::Number),
-        column("error_passes_to_oracle", "to\noracle", Format::Number),
-        column("error_passes_to_intensity", "to\nintensity", Format::Number),
-        column("error_cpu_s", "relMSE\nx CPU s", Format::Number),
-        column("error_cpu_s_to_intensity", "to\nintensity", Format::Number),
-        column("remark", "", Format::Words),
-    ]);
+    columns.extend(interval("cpu_s_a_sample", "CPU ns\na sample", Format::Nanoseconds));
+    columns.extend(interval("error_passes", "relMSE\nx passes", Format::Number));
+    columns.extend(interval("error_passes_to_oracle", "to\noracle", Format::Number));
+    columns.extend(interval("error_passes_to_intensity", "to\nintensity", Format::Number));
+    columns.extend(interval("error_cpu_s", "relMSE\nx CPU s", Format::Number));
+    columns.extend(interval("error_cpu_s_to_intensity", "to\nintensity", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     let measured = TableRecord {
         name: measured_table(scene),
         title: format!("{}: measured error for each sample and for each second", scene.name()),
         columns,
         notes: vec![
             format!(
-                "relMSE over {} receivers of the camera in {} runs of {} passes each (fewer where they take more than {} CPU s).",
-                options.pixels, options.repeats, options.passes, options.seconds
+                "{} runs of up to {} passes (1, 4, 16 and so on, within {} s of counted work) of all that the camera sees; relMSE at {} of its \
+                 receivers. CPU ns a sample: coming to a receiver included, set-up not.",
+                options.repeats,
+                options.passes,
+                options.seconds,
+                session.pixels(PIXELS)
             ),
             "relMSE x passes and relMSE x CPU s: lower is better. A biased strategy has none: its error does not fall as 1 / passes."
                 .into(),
-            "oracle knows what is visible and is not timed: the floor of any error. intensity is the floor without visibility.".into(),
-            "to oracle, to intensity: where both did the same number of passes. Set-up is not in the CPU seconds (see `study scaling`)."
+            "oracle knows what is visible and is not timed: the floor of any error, at 512 receivers at most. intensity is the floor without \
+             visibility."
                 .into(),
-            timing::note("all that the camera sees"),
-            "the measured receivers stand for all: a strategy that reuses its neighbours' choices (restir) finds them farther away here."
+            "to oracle, to intensity: where both did the same number of passes. Set-up is not in the CPU seconds (see `study scaling`)."
                 .into(),
         ],
         plots: vec![error_plot],
@@ -170,10 +178,10 @@ fn by_probability(
             Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
             Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
             Err(error) => {
-                let mut cells = vec![strategy.name().into(), claim(&blank(strategy))];
-                cells.resize(10, Cell::Missing);
-                cells.push(format!("failed: {error}").as_str().into());
-                writer.row(&table, cells)?;
+                let mut row = vec![strategy.name().into(), claim(&blank(strategy))];
+                row.resize(quality_columns().len() - 1, Cell::Missing);
+                row.push(format!("failed: {error}").as_str().into());
+                writer.row(&table, row)?;
             }
         }
         session.watch.advance(1);
@@ -196,28 +204,28 @@ fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> 
         let known = |finding: &Finding| if let Finding::Known(quality) = *finding { Some(quality) } else { None };
         found.iter().filter_map(known).collect()
     };
+    // Receivers are drawn independently.
     let mean = |of: fn(&Quality) -> f64, found: &[Finding]| {
-        let known = known(found);
-        known.iter().map(of).sum::<f64>() / known.len() as f64
+        cells(Figure::mean(known(found).iter().map(of).collect()).interval())
     };
     let (street, facade) = found.split_at(by_area.streets);
     let all = known(found);
     let mut sorted: Vec<f64> = all.iter().map(|quality| quality.variance).collect();
     sorted.sort_by(f64::total_cmp);
-    vec![
-        strategy.name().into(),
-        claim(&blank(strategy)),
-        mean(|quality| quality.variance, found).into(),
-        // The lower of two middle ones: between a number and infinity there is no middle.
-        sorted.get(sorted.len().saturating_sub(1) / 2).copied().into(),
-        mean(|quality| quality.variance, street).into(),
-        mean(|quality| quality.variance, facade).into(),
-        mean(|quality| quality.picks, found).into(),
+    let mut row = vec![strategy.name().into(), claim(&blank(strategy))];
+    row.extend(mean(|quality| quality.variance, found));
+    // The lower of two middle ones: between a number and infinity there is no middle.
+    row.push(sorted.get(sorted.len().saturating_sub(1) / 2).copied().into());
+    row.extend(mean(|quality| quality.variance, street));
+    row.extend(mean(|quality| quality.variance, facade));
+    row.extend(mean(|quality| quality.picks, found));
+    row.extend([
         (found.len() as u64).into(),
         ((found.len() - all.len()) as u64).into(),
         (all.iter().filter(|quality| quality.variance.is_infinite()).count() as u64).into(),
         Cell::Missing,
-    ]
+    ]);
+    row
 }
 
 fn by_measuring(
@@ -226,49 +234,28 @@ fn by_measuring(
     scene: Scene,
     strategies: &[Configured],
 ) -> Result<()> {
-    let options = session.options;
     let table = measured_table(&scene);
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let target = Target::of(&stage, spread(stage.receivers(), options.pixels));
+    let target = Target::whole(&stage).thinned(session.pixels(PIXELS));
     let reference = session.reference(&target)?;
-    let budget = Budget { usual_passes: options.passes, most_passes: options.passes, seconds: options.seconds };
-    let trials = Trials {
-        target: &target,
-        truth: &reference.truth,
-        budget,
-        runs: options.repeats,
-        seed: options.seed,
-        threads: options.threads,
-    };
-    let frame = stage.receivers().len();
-    let mut found = Vec::new();
-    for (strategy, summary) in strategies.iter().zip(trials.run(&strategies.iter().collect::<Vec<_>>(), session.watch)?)
-    {
-        let timing = Timing::of(&trials, strategy, &summary, frame)?;
-        found.push(Found { summary, sample_s: timing.map(|timing| timing.sample_s()) });
-    }
-    let receivers = target.places.len() as f64;
-    let (oracle, intensity) = (of(&found, "oracle"), of(&found, "intensity"));
+    let trial = Trial { session, target: &target, truth: &reference.truth };
+    let found = trial.run(&strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let of = |strategy: &str| found.iter().find(|one| one.summary.strategy == strategy);
+    let (oracle, intensity) = (of("oracle"), of("intensity"));
     for one in &found {
         let summary = &one.summary;
-        let mut cells = vec![summary.strategy.as_str().into(), claim(summary)];
-        if measured(summary) {
-            cells.push(u64::from(summary.passes).into());
-            cells.extend(both(summary.rel_mse));
-            cells.extend(if unbiased(summary) { [Cell::Missing, Cell::Missing] } else { both(summary.rel_bias2) });
-        } else {
-            cells.resize(7, Cell::Missing);
-        }
-        cells.extend([
-            one.sample_s.into(),
-            one.error_passes().into(),
-            one.ratio(oracle, Found::error_passes).into(),
-            one.ratio(intensity, Found::error_passes).into(),
-            one.error_samples_s().map(|error| error * receivers).into(),
-            one.ratio(intensity, Found::error_samples_s).into(),
-            remark(summary),
-        ]);
-        writer.row(&table, cells)?;
+        let mut row = vec![summary.strategy.as_str().into(), claim(summary)];
+        row.push(measured(summary).then_some(u64::from(summary.passes)).into());
+        row.extend(cells(measured(summary).then_some(summary.rel_mse)));
+        row.extend(cells((measured(summary) && !unbiased(summary)).then_some(summary.rel_bias2)));
+        row.extend(cells(one.sample_s(target.frame.len())));
+        row.extend(cells(one.error_passes().map(|figure| figure.interval())));
+        row.extend(cells(one.ratio(oracle, Tried::error_passes)));
+        row.extend(cells(one.ratio(intensity, Tried::error_passes)));
+        row.extend(cells(one.error_cpu_s().map(|figure| figure.interval())));
+        row.extend(cells(one.ratio(intensity, Tried::error_cpu_s)));
+        row.push(remark(summary));
+        writer.row(&table, row)?;
     }
     let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
     writer.note(format!(
@@ -280,35 +267,30 @@ fn by_measuring(
     Ok(())
 }
 
-/// What was found of one strategy.
-struct Found {
-    summary: Summary,
-    /// CPU seconds of a sample, where it has a time.
-    sample_s: Option<f64>,
-}
-
-impl Found {
+impl Tried {
     /// relMSE x passes, where it means something.
-    fn error_passes(&self) -> Option<f64> {
+    fn error_passes(&self) -> Option<Figure> {
         let s = &self.summary;
-        (measured(s) && unbiased(s)).then(|| s.rel_mse.mean * f64::from(s.passes))
+        let passes = f64::from(s.passes);
+        let values = || self.at(s.passes).iter().map(|row| row.rel_mse * passes).collect();
+        (measured(s) && unbiased(s)).then(|| Figure::mean(values()))
     }
 
-    /// relMSE x passes x CPU seconds of a sample.
-    fn error_samples_s(&self) -> Option<f64> {
-        self.error_passes().zip(self.sample_s).map(|(error, seconds)| error * seconds)
+    /// relMSE x CPU seconds of sampling the frame.
+    fn error_cpu_s(&self) -> Option<Figure> {
+        let s = &self.summary;
+        let figure =
+            || self.of_means(s.passes, [|row| row.rel_mse, |row| row.cpu_s], |[error, seconds]| error * seconds);
+        (measured(s) && unbiased(s) && self.is_timed()).then(figure)
     }
 
     /// A figure as a multiple of another strategy's at the same number of passes: points spread over passes lower it as
     /// they grow.
-    fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<f64>) -> Option<f64> {
+    fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<Figure>) -> Option<Interval> {
         let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
-        figure(self).zip(figure(to)).map(|(own, other)| own / other)
+        let (own, other) = (figure(self)?, figure(to)?);
+        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other, CONFIDENCE) }
     }
-}
-
-fn of<'a>(found: &'a [Found], strategy: &str) -> Option<&'a Found> {
-    found.iter().find(|one| one.summary.strategy == strategy)
 }
 
 #[cfg(test)]

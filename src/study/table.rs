@@ -9,9 +9,10 @@ pub(super) fn column(name: &str, head: &str, format: Format) -> ColumnRecord {
     ColumnRecord { name: name.to_owned(), head: head.to_owned(), format }
 }
 
-/// A column of figures and one of half their 95 % intervals.
-pub(super) fn interval(name: &str, head: &str, format: Format) -> [ColumnRecord; 2] {
-    [column(name, head, format), column(&format!("{name}_half_width"), "", Format::HalfWidth)]
+/// A column of figures, and one for each end of their 95 % intervals.
+pub(super) fn interval(name: &str, head: &str, format: Format) -> [ColumnRecord; 3] {
+    let end = |end: &str, format| column(&format!("{name}_{end}"), "", format);
+    [column(name, head, format), end("low", Format::Low), end("high", Format::High)]
 }
 
 /// A log-log plot of the column `y` over the column `x`, a curve for each value of `series`.
@@ -32,9 +33,12 @@ pub(super) fn plot(name: &str, title: &str, series: &str, x: (&str, &str), y: (&
     }
 }
 
-/// The two cells of an interval.
-pub(super) fn both(interval: Interval) -> [Cell; 2] {
-    [interval.mean.into(), interval.half_width.into()]
+/// The three cells of an interval; missing where there is none.
+pub(super) fn cells(interval: impl Into<Option<Interval>>) -> [Cell; 3] {
+    match interval.into() {
+        Some(Interval { mean, low, high }) => [mean, low, high].map(Cell::from),
+        None => [Cell::Missing, Cell::Missing, Cell::Missing],
+    }
 }
 
 /// What a strategy says of itself.

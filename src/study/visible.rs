@@ -7,24 +7,20 @@
 //! the frame's receivers, since their truth takes a ray for every light.
 
 use super::cutoff::sizes;
-use super::table::{both, column, interval, plot};
+use super::table::{cells, column, interval, measured, plot, remark};
+use super::trial::{Budgets, Trial, Tried, mean};
 use super::{Entry, Session};
 use crate::base::error::Result;
-use crate::base::random::RunKey;
-use crate::base::statistics::Moments;
-use crate::measure::clock::timed;
+use crate::measure::figure::{CONFIDENCE, Figure};
+use crate::measure::plan::budgets;
 use crate::measure::reference::Reference;
-use crate::measure::summary::CONFIDENCE;
-use crate::measure::target::{Target, places};
-use crate::measure::trials::side_by_side;
-use crate::record::Interval;
-use crate::record::study::{Cell, Format, Study, TableRecord};
+use crate::measure::target::Target;
+use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::render::film::Film;
-use crate::render::passes::Plan;
+use crate::record::{Interval, Row};
 use crate::scene::file::{self, Overrides};
+use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured};
-use crate::strategy::{BuildContext, Role};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -40,6 +36,9 @@ const CANYON: &str = "scenes/downtown.toml";
 const PLAZA: &str = "scenes/plaza.toml";
 /// Fewest lights.
 const FEWEST: u64 = 1_000;
+
+/// Receivers that errors are taken at.
+const PIXELS: usize = 512;
 
 /// From the literature's tree to what each place sees.
 const STEPS: [(&str, &str); 7] = [
@@ -88,52 +87,88 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let steps = STEPS.iter().chain(&FLOORS).map(|&(step, name)| Ok((step, registry::parse(name)?)));
     let steps: Vec<(&str, Configured)> = steps.collect::<Result<_>>()?;
     let sweep = registry::parse_list(options.strategies.as_deref().unwrap_or(&SWEEP.join(",")))?;
-    let mut frames: Vec<(String, &str, Option<u64>)> =
+    let mut scenes: Vec<(String, &str, Option<u64>)> =
         sizes.into_iter().map(|lights| (format!("canyon-{lights}"), CANYON, Some(lights))).collect();
-    frames.push(("plaza".into(), PLAZA, None));
-    let mut tables: Vec<TableRecord> = frames.iter().map(|(name, ..)| ablation(session, name)).collect();
+    scenes.push(("plaza".into(), PLAZA, None));
+    let mut tables: Vec<TableRecord> = scenes.iter().map(|(name, ..)| ablation(session, name)).collect();
     tables.push(sweep_table(session));
     let swept = session.scenes(&SWEPT);
     // Read once before anything is measured: a misspelt name must not cost an hour.
     for path in &swept {
         file::open(path, &options.overrides)?;
     }
-    let mut writer = session.open(tables)?;
-    for (table, path, lights) in &frames {
-        let frame = Frame::open(session, Path::new(path), *lights)?;
-        let few = frame.stage.scene().lights().len() <= MOST_OF_ORACLE;
-        let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
-        let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
-        let mut passes = vec![1, 8, options.passes];
-        passes.retain(|&n| n <= options.passes);
-        passes.dedup();
-        for passes in passes {
-            let found = frame.all(session, &strategies, passes)?;
-            let product =
-                |name: &str| steps.iter().zip(&found).find(|((_, of), _)| of.name() == name).map(|f| f.1.product());
-            let (classic, tree) = (product(steps[0].1.name()), product("light-tree"));
-            for ((step, strategy), found) in steps.iter().zip(&found) {
-                let timed = strategy.info().role != Role::Oracle;
-                let mut cells: Vec<Cell> = vec![(*step).into(), strategy.name().into(), u64::from(passes).into()];
-                cells.extend(found.cells(timed));
-                let ratio = |to: Option<f64>| to.filter(|_| timed).map(|to| found.product() / to);
-                cells.extend([ratio(classic).into(), ratio(tree).into()]);
-                writer.row(table, cells)?;
-            }
-        }
-        frame.note(&mut writer);
+    let mut writer = session.open([], tables)?;
+    for (table, path, lights) in &scenes {
+        step_by_step(session, &mut writer, table, &open(session, Path::new(path), *lights)?, &steps)?;
     }
     for path in &swept {
-        let frame = Frame::open(session, path, None)?;
-        let found = frame.all(session, &sweep.iter().collect::<Vec<_>>(), options.passes)?;
-        for (strategy, one) in sweep.iter().zip(&found) {
-            let mut cells: Vec<Cell> = vec![frame.stage.scene().name().into(), strategy.name().into()];
-            cells.extend(one.cells(strategy.info().role != Role::Oracle));
-            cells.push((one.product() / found[0].product()).into());
-            writer.row("sweep", cells)?;
-        }
+        sweep_over(session, &mut writer, &open(session, path, None)?, &sweep)?;
     }
     session.finish(writer)
+}
+
+fn open(session: &Session<'_>, path: &Path, lights: Option<u64>) -> Result<Stage> {
+    let scene = file::open(path, &Overrides { lights, ..session.options.overrides.clone() })?;
+    Ok(Stage::new(scene, LeaveOut::Yes, Offset::SCALED))
+}
+
+/// The rows of one table: every step at every budget.
+fn step_by_step(
+    session: &Session<'_>,
+    writer: &mut StudyWriter,
+    table: &str,
+    stage: &Stage,
+    steps: &[(&str, Configured)],
+) -> Result<()> {
+    let few = stage.scene().lights().len() <= MOST_OF_ORACLE;
+    let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
+    let target = target(session, stage);
+    let reference = session.reference(&target)?;
+    let trial = Trial { session, target: &target, truth: &reference.truth };
+    let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
+    let tried = trial.run(&strategies, Budgets::All)?;
+    let of = |name: &str| strategies.iter().zip(&tried).find(|(of, _)| of.name() == name).map(|(_, tried)| tried);
+    let (classic, tree) = (of(strategies[0].name()), of("light-tree"));
+    for passes in budgets(session.options.passes) {
+        for ((step, strategy), tried) in steps.iter().zip(&tried).filter(|(_, tried)| !tried.at(passes).is_empty()) {
+            let mut row: Vec<Cell> = vec![(*step).into(), strategy.name().into(), u64::from(passes).into()];
+            row.extend(figures_at(tried, passes));
+            row.extend(cells(tried.product_to(classic, passes)));
+            row.extend(cells(tried.product_to(tree, passes)));
+            row.push(Cell::Missing);
+            writer.row(table, row)?;
+        }
+    }
+    for ((step, strategy), tried) in steps.iter().zip(&tried).filter(|(_, tried)| !measured(&tried.summary)) {
+        let mut row: Vec<Cell> = vec![(*step).into(), strategy.name().into()];
+        row.resize(writer.table(table).0.columns.len() - 1, Cell::Missing);
+        row.push(remark(&tried.summary));
+        writer.row(table, row)?;
+    }
+    note(writer, &target, &reference);
+    Ok(())
+}
+
+/// The rows of one scene in the table of parameters.
+fn sweep_over(session: &Session<'_>, writer: &mut StudyWriter, stage: &Stage, sweep: &[Configured]) -> Result<()> {
+    let target = target(session, stage);
+    let reference = session.reference(&target)?;
+    let trial = Trial { session, target: &target, truth: &reference.truth };
+    let tried = trial.run(&sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    for (strategy, one) in sweep.iter().zip(&tried) {
+        let mut row: Vec<Cell> = vec![stage.scene().name().into(), strategy.name().into()];
+        if measured(&one.summary) {
+            let passes = one.summary.passes;
+            row.push(u64::from(passes).into());
+            row.extend(figures_at(one, passes));
+            row.extend(cells(one.product_to(tried.first(), passes)));
+        } else {
+            row.resize(writer.table("sweep").0.columns.len() - 1, Cell::Missing);
+        }
+        row.push(remark(&one.summary));
+        writer.row("sweep", row)?;
+    }
+    Ok(())
 }
 
 fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
@@ -143,10 +178,9 @@ fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
         column("passes", "passes", Format::Whole),
     ];
     columns.extend(figures());
-    columns.extend([
-        column("to_classic", "to\nclassic", Format::Number),
-        column("to_tree", "to\nlight-tree", Format::Number),
-    ]);
+    columns.extend(interval("to_classic", "to\nclassic", Format::Number));
+    columns.extend(interval("to_tree", "to\nlight-tree", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     TableRecord {
         title: format!("{name}: from the literature's tree to what each place sees"),
         columns,
@@ -166,152 +200,93 @@ fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
 }
 
 fn sweep_table(session: &Session<'_>) -> TableRecord {
-    let mut columns = vec![column("scene", "scene", Format::Words), column("strategy", "strategy", Format::Name)];
+    let mut columns = vec![
+        column("scene", "scene", Format::Words),
+        column("strategy", "strategy", Format::Name),
+        column("passes", "passes", Format::Whole),
+    ];
     columns.extend(figures());
-    columns.push(column("to_first", "to\nfirst", Format::Number));
+    columns.extend(interval("to_first", "to\nfirst", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     TableRecord {
         name: "sweep".into(),
         title: "each parameter away from its default, or the strategies asked for".into(),
         columns,
-        notes: vec![notes(session), format!("{} passes.", session.options.passes)],
+        notes: vec![
+            notes(session),
+            "to first: relMSE x CPU s over that of the scene's first row, where that has as many passes.".into(),
+        ],
         plots: Vec::new(),
     }
 }
 
-fn figures() -> Vec<crate::record::study::ColumnRecord> {
+fn figures() -> Vec<ColumnRecord> {
     let mut columns = interval("rel_mse", "relMSE", Format::Number).to_vec();
-    columns.extend([
-        column("outliers", "over that\nwithout the\nworst 0.1 %", Format::Number),
-        column("cpu_s", "CPU s", Format::Number),
-        column("error_cpu_s", "relMSE\nx CPU s", Format::Number),
-        column("heap_bytes", "memory", Format::Bytes),
-    ]);
+    columns.extend(interval("outliers", "over that\nwithout the\nworst 0.1 %", Format::Number));
+    columns.extend(interval("cpu_s", "CPU s", Format::Number));
+    columns.extend(interval("error_cpu_s", "relMSE\nx CPU s", Format::Number));
+    columns.push(column("heap_bytes", "memory", Format::Bytes));
     columns
+}
+
+fn figures_at(tried: &Tried, passes: u32) -> Vec<Cell> {
+    let rows = tried.at(passes);
+    let timed = |figure: Figure| tried.is_timed().then(|| figure.interval());
+    let mut row = cells(mean(&rows, |row| row.rel_mse).interval()).to_vec();
+    let outliers =
+        tried.of_means(passes, [|row| row.rel_mse, |row| row.rel_mse_trimmed], |[all, trimmed]| all / trimmed);
+    row.extend(cells(outliers.interval()));
+    row.extend(cells(timed(mean(&rows, Row::total_cpu_s))));
+    row.extend(cells(timed(tried.product(passes))));
+    row.push(rows.iter().map(|row| row.heap_bytes).max().into());
+    row
+}
+
+impl Tried {
+    /// relMSE x CPU seconds, set-up included.
+    fn product(&self, passes: u32) -> Figure {
+        self.of_means(passes, [|row| row.rel_mse, Row::total_cpu_s], |[error, seconds]| error * seconds)
+    }
+
+    /// That over another's, where both have a time at as many passes.
+    fn product_to(&self, other: Option<&Self>, passes: u32) -> Option<Interval> {
+        let other = other.filter(|other| self.is_timed() && other.is_timed() && !other.at(passes).is_empty())?;
+        if std::ptr::eq(self, other) {
+            return Some(Interval::certain(1.0));
+        }
+        self.product(passes).over(&other.product(passes), CONFIDENCE)
+    }
 }
 
 fn notes(session: &Session<'_>) -> String {
     format!(
-        "{} runs, each from nothing in one block of passes on one thread; CPU s: of the whole frame, set-up and learning too; relMSE at {} of its \
-         receivers (fewer among 100,000 lights and more). `intensity` is run at these alone and its time brought to the frame; `oracle` has none.",
-        session.options.repeats, session.options.pixels
+        "{} runs, each from nothing in one block of passes on one thread (none of more than {} s of counted work); CPU s: of the whole \
+         frame, set-up and learning too; relMSE at {} of its receivers (fewer among 100,000 lights and more). `oracle` has no time.",
+        session.options.repeats,
+        session.options.seconds,
+        session.pixels(PIXELS)
     )
 }
 
-/// A frame, and the truth at some of its receivers.
-struct Frame {
-    stage: Stage,
-    places: Vec<usize>,
-    reference: Reference,
+/// Whole frames, and errors at fewer receivers where their truth takes a ray for each of many lights.
+fn target<'a>(session: &Session<'_>, stage: &'a Stage) -> Target<'a> {
+    let own = match stage.scene().lights().len() {
+        0..100_000 => PIXELS,
+        100_000..1_000_000 => PIXELS / 2,
+        _ => PIXELS / 4,
+    };
+    Target::whole(stage).thinned(session.pixels(own))
 }
 
-/// What runs of a strategy gave.
-struct Found {
-    rel_mse: Interval,
-    outliers: f64,
-    cpu_s: f64,
-    heap_bytes: u64,
-}
-
-impl Found {
-    fn product(&self) -> f64 {
-        self.rel_mse.mean * self.cpu_s
-    }
-
-    fn cells(&self, timed: bool) -> Vec<Cell> {
-        let time = |value: f64| Cell::from(timed.then_some(value));
-        let mut cells = both(self.rel_mse).to_vec();
-        cells.extend([self.outliers.into(), time(self.cpu_s), time(self.product()), self.heap_bytes.into()]);
-        cells
-    }
-}
-
-/// What one run gave.
-struct One {
-    strategy: usize,
-    rel_mse: f64,
-    trimmed: f64,
-    cpu_s: f64,
-    heap_bytes: u64,
-}
-
-impl Frame {
-    fn open(session: &Session<'_>, path: &Path, lights: Option<u64>) -> Result<Self> {
-        let options = session.options;
-        let scene = file::open(path, &Overrides { lights, ..options.overrides.clone() })?;
-        let pixels = match scene.lights().len() {
-            0..100_000 => options.pixels,
-            100_000..1_000_000 => options.pixels.min(256),
-            _ => options.pixels.min(128),
-        };
-        let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-        let places: Vec<usize> = places(stage.receivers().len(), pixels).collect();
-        let few = places.iter().map(|&i| stage.receivers()[i]).collect();
-        let reference = session.reference(&Target::of(&stage, few))?;
-        Ok(Self { stage, places, reference })
-    }
-
-    /// Runs of all strategies.
-    fn all(&self, session: &Session<'_>, strategies: &[&Configured], passes: u32) -> Result<Vec<Found>> {
-        let options = session.options;
-        let of = strategies.len();
-        // Run by run, so that all strategies share the machine's good and bad times.
-        let run = |unit: usize| {
-            self.one(strategies[unit % of], unit % of, passes, RunKey { seed: options.seed, run: (unit / of) as u32 })
-        };
-        let all = side_by_side(of * options.repeats as usize, options.threads, session.watch, run)?;
-        let found = (0..of).map(|strategy| {
-            let of =
-                |value: fn(&One) -> f64| Moments::of(all.iter().filter(move |one| one.strategy == strategy).map(value));
-            let rel_mse = of(|one| one.rel_mse);
-            Found {
-                rel_mse: Interval { mean: rel_mse.mean, half_width: rel_mse.half_width(CONFIDENCE) },
-                outliers: rel_mse.mean / of(|one| one.trimmed).mean,
-                cpu_s: of(|one| one.cpu_s).mean,
-                heap_bytes: all
-                    .iter()
-                    .filter(|one| one.strategy == strategy)
-                    .map(|one| one.heap_bytes)
-                    .max()
-                    .unwrap_or(0),
-            }
-        });
-        Ok(found.collect())
-    }
-
-    fn one(&self, strategy: &Configured, index: usize, passes: u32, key: RunKey) -> Result<One> {
-        let stage = &self.stage;
-        let context = BuildContext { stage, seed: key.stream(u32::MAX, 0).bits() };
-        let (sampler, setup) = timed(|| strategy.build(context));
-        let sampler = sampler?;
-        let few: Vec<_> = self.places.iter().map(|&i| stage.receivers()[i]).collect();
-        // Those that look at every light share nothing between receivers.
-        let alone = FLOORS.iter().any(|(_, name)| *name == strategy.info().name);
-        let receivers = if alone { &few[..] } else { stage.receivers() };
-        let mut film = Film::new(receivers.len());
-        let ((), spent) = timed(|| Plan { stage, receivers, sampler: &*sampler, key }.run(passes, &mut film));
-        let scale = stage.receivers().len() as f64 / receivers.len().max(1) as f64;
-        let image = film.image();
-        let image = if alone { image } else { self.places.iter().map(|&i| image[i]).collect() };
-        let errors = self.reference.truth.errors(&image);
-        Ok(One {
-            strategy: index,
-            rel_mse: errors.rel_mse,
-            trimmed: errors.rel_mse_trimmed,
-            cpu_s: setup.cpu + scale * spent.cpu,
-            heap_bytes: sampler.heap_bytes() as u64,
-        })
-    }
-
-    fn note(&self, writer: &mut StudyWriter) {
-        let (scene, truth) = (self.stage.scene(), &self.reference.truth);
-        writer.note(format!(
-            "{}, {} lights, {} of which can reach what the camera sees, at {} receivers of {}; the reference's own relMSE is {:.1e}.",
-            scene.name(),
-            scene.lights().len(),
-            self.stage.lights().len(),
-            self.places.len(),
-            self.stage.receivers().len(),
-            truth.own_rel_mse()
-        ));
-    }
+fn note(writer: &mut StudyWriter, target: &Target<'_>, reference: &Reference) {
+    let scene = target.stage.scene();
+    writer.note(format!(
+        "{}, {} lights, {} of which can reach what the camera sees, at {} receivers of {}; the reference's own relMSE is {:.1e}.",
+        scene.name(),
+        scene.lights().len(),
+        target.stage.lights().len(),
+        target.places.len(),
+        target.frame.len(),
+        reference.truth.own_rel_mse()
+    ));
 }

@@ -1,18 +1,23 @@
 //! How far off are samplers, one beside the other, and what does a sample of each take?
+//!
+//! Every contender looks at each receiver alone, so that receivers from all over a frame stand for it.
 
 use super::super::Session;
+use super::super::trial::of_means;
 use crate::base::error::{Error, Result};
 use crate::base::random::RunKey;
-use crate::base::statistics::Moments;
-use crate::measure::clock::timed;
-use crate::measure::errors::Truth;
+use crate::measure::engine::sample;
+use crate::measure::errors::{Errors, Truth};
+use crate::measure::figure::{CONFIDENCE, Figure};
 use crate::record::Interval;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
 use crate::strategy::erased::AnySampler;
 use crate::visibility::stage::Stage;
-use rayon::prelude::*;
+
+/// Receivers that contenders are measured at.
+pub(super) const PIXELS: usize = 512;
 
 /// A sampler in a scene, and how many passes of it make an image.
 pub(super) struct Contender<'a> {
@@ -23,19 +28,46 @@ pub(super) struct Contender<'a> {
 
 /// What independent runs of a contender left.
 pub(super) struct Measured {
-    /// Mean squared error in (cd/m^2)^2.
-    pub(super) mse: Interval,
+    /// Errors of each run, and CPU seconds of all its passes at a receiver.
+    runs: Vec<(Errors, f64)>,
+    /// The means of the latter.
     pub(super) rel_mse: Interval,
-    /// CPU seconds of all passes at a receiver: the median over runs.
-    pub(super) cpu_s: f64,
+    pub(super) cpu_s: Interval,
     /// Shadow rays of all passes at a receiver.
     pub(super) rays: f64,
 }
 
-const CONFIDENCE: f64 = 0.95;
+impl Measured {
+    fn of(runs: Vec<(Errors, f64)>, rays: f64) -> Self {
+        let mean = |value: fn(&(Errors, f64)) -> f64| Figure::mean(runs.iter().map(value).collect()).interval();
+        Self { rel_mse: mean(|run| run.0.rel_mse), cpu_s: mean(|run| run.1), rays, runs }
+    }
 
-/// Measures contenders at the same receivers in independent runs, all of them in each run, each run on a thread of its
-/// own.
+    /// Mean squared error in (cd/m^2)^2.
+    pub(super) fn mse(&self) -> Interval {
+        self.mse_figure().interval()
+    }
+
+    /// That over another's.
+    pub(super) fn mse_over(&self, other: &Self) -> Option<Interval> {
+        if std::ptr::eq(self, other) {
+            return Some(Interval::certain(1.0));
+        }
+        self.mse_figure().over(&other.mse_figure(), CONFIDENCE)
+    }
+
+    fn mse_figure(&self) -> Figure {
+        Figure::mean(self.runs.iter().map(|run| run.0.mse).collect())
+    }
+
+    /// relMSE x CPU seconds at a receiver.
+    pub(super) fn cost_s(&self) -> Interval {
+        let (errors, seconds) = self.runs.iter().map(|(errors, seconds)| (errors.rel_mse, *seconds)).unzip();
+        of_means([errors, seconds], |[error, seconds]| error * seconds).interval()
+    }
+}
+
+/// Measures contenders at the same receivers in independent runs.
 pub(super) fn measure(
     session: &Session<'_>,
     what: &str,
@@ -43,51 +75,34 @@ pub(super) fn measure(
     receivers: &[Receiver],
     truth: &Truth,
 ) -> Result<Vec<Measured>> {
-    let watch = session.watch;
-    watch.begin(what, u64::from(session.options.repeats));
-    let once = |run: u32| -> Result<Vec<(f64, f64, f64)>> {
-        let key = RunKey { seed: session.options.seed, run };
-        // Each run begins with another contender: none always runs first, into cold caches.
-        let mut found = vec![(0.0, 0.0, 0.0); contenders.len()];
-        for i in (0..contenders.len()).map(|i| (i + run as usize) % contenders.len()) {
-            let contender = &contenders[i];
-            watch.check()?;
-            let plan = Plan { stage: contender.stage, receivers, sampler: contender.sampler, key };
-            let mut film = Film::new(receivers.len());
-            let ((), spent) = timed(|| plan.run(contender.passes, &mut film));
-            let errors = truth.errors(&film.image());
-            found[i] = (errors.mse, errors.rel_mse, spent.cpu);
-        }
-        watch.advance(1);
-        Ok(found)
-    };
-    let runs: Vec<Vec<(f64, f64, f64)>> =
-        (0..session.options.repeats).into_par_iter().map(once).collect::<Result<_>>()?;
-    watch.end();
-    let interval = |values: Vec<f64>| {
-        let moments = Moments::of(values);
-        Interval { mean: moments.mean, half_width: moments.half_width(CONFIDENCE) }
-    };
-    let summary = |(i, contender): (usize, &Contender<'_>)| {
-        let of = |pick: fn(&(f64, f64, f64)) -> f64| runs.iter().map(|run| pick(&run[i])).collect::<Vec<f64>>();
-        let mut times = of(|run| run.2);
-        times.sort_by(f64::total_cmp);
-        let plan = Plan {
-            stage: contender.stage,
-            receivers,
-            sampler: contender.sampler,
-            key: RunKey { seed: session.options.seed, run: 0 },
-        };
-        let counts = plan.run_counting(contender.passes, &mut Film::new(receivers.len()));
-        Measured {
-            mse: interval(of(|run| run.0)),
-            rel_mse: interval(of(|run| run.1)),
-            cpu_s: times.get(times.len() / 2).copied().unwrap_or(f64::NAN) / receivers.len() as f64,
-            rays: counts.shadow_rays as f64 / receivers.len() as f64,
-        }
-    };
     if receivers.is_empty() {
         return Err(Error::Invalid("nothing that the camera sees is lit: there is nothing to measure".into()));
     }
-    Ok(contenders.iter().enumerate().map(summary).collect())
+    let plan = |i: usize, run| {
+        let key = RunKey { seed: session.options.seed, run };
+        Plan { stage: contenders[i].stage, receivers, sampler: contenders[i].sampler, key }
+    };
+    let units: Vec<(usize, u32)> =
+        (0..contenders.len()).flat_map(|i| (0..session.options.repeats).map(move |run| (i, run))).collect();
+    let mut runs: Vec<Vec<(u32, (Errors, f64))>> = contenders.iter().map(|_| Vec::new()).collect();
+    session.engine().run(
+        what,
+        &units,
+        session.watch,
+        |&(i, run), meter| {
+            let (image, spent) = sample(&plan(i, run), contenders[i].passes, meter);
+            Ok((truth.errors(&image), spent.cpu / receivers.len() as f64))
+        },
+        |&(i, run), found| {
+            runs[i].push((run, found));
+            Ok(())
+        },
+    )?;
+    let measured = runs.into_iter().enumerate().map(|(i, mut runs)| {
+        runs.sort_by_key(|(run, _)| *run);
+        let counts = plan(i, 0).run_counting(contenders[i].passes, &mut Film::new(receivers.len()));
+        let rays = counts.shadow_rays as f64 / receivers.len() as f64;
+        Measured::of(runs.into_iter().map(|(_, found)| found).collect(), rays)
+    });
+    Ok(measured.collect())
 }

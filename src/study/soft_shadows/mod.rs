@@ -18,20 +18,16 @@ pub(super) const ENTRY: Entry = Entry {
 };
 
 fn run(session: &Session<'_>) -> Result<Study> {
-    let mut writer = session.open(vec![
-        rays::table(session),
-        rays::laws(),
-        shares::table(session),
-        ways::table(),
-        ways::by_size(),
-    ])?;
+    let mut writer = session
+        .open([], vec![rays::table(session), rays::laws(), shares::table(session), ways::table(), ways::by_size()])?;
     rays::run(session, &mut writer)?;
     shares::run(session, &mut writer)?;
     ways::run(session, &mut writer)?;
     let options = session.options;
     writer.note(format!(
         "Errors over {} receivers in {} independent runs; all contenders of a table in each run.",
-        options.pixels, options.repeats
+        session.pixels(measure::PIXELS),
+        options.repeats
     ));
     session.finish(writer)
 }

@@ -1,6 +1,6 @@
 //! How does the error of a soft shadow fall with its rays, and how large is its penumbra?
 
-use super::measure::{Contender, measure};
+use super::measure::{Contender, PIXELS, measure};
 use super::picture::{Shadow, outlined, shadow, sheet};
 use super::scene::{HEIGHT, SIZES, one_light};
 use crate::base::error::Result;
@@ -18,7 +18,7 @@ use crate::strategy::erased::AnySampler;
 use crate::strategy::registry::parse;
 use crate::study::Session;
 use crate::study::fit::PowerLaw;
-use crate::study::table::{both, column, interval, plot};
+use crate::study::table::{cells, column, interval, plot};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
@@ -36,8 +36,8 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
         column("penumbra_share", "penumbra,\n%", Format::Percent),
         column("passes", "rays a\ntriangle", Format::Whole),
         column("rays", "rays a\nreceiver", Format::Number),
-        column("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds),
     ];
+    columns.extend(interval("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds));
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
     let title = "error against rays: a post under one square light";
     TableRecord {
@@ -47,7 +47,7 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
         notes: vec![
             format!(
                 "{} receivers; `all`, as many passes as rays a triangle (the square is two), `points=` as named.",
-                session.options.pixels
+                session.pixels(PIXELS)
             ),
             "the light has the same intensity whatever its size; umbra and penumbra as shares of what the camera sees."
                 .into(),
@@ -66,14 +66,13 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
 }
 
 pub(super) fn laws() -> TableRecord {
+    let mut columns = vec![column("light", "light, points", Format::Name)];
+    columns.extend(interval("exponent", "exponent", Format::Number));
+    columns.push(column("residual", "residual", Format::Number));
     TableRecord {
         name: "laws".into(),
         title: "error against rays as a power law".into(),
-        columns: vec![
-            column("light", "light, points", Format::Name),
-            column("exponent", "exponent", Format::Number),
-            column("residual", "residual", Format::Number),
-        ],
+        columns,
         notes: vec![
             "relMSE = factor x rays^exponent; -1 is the law of independent points; residual: rms of ln(y / fit)."
                 .into(),
@@ -94,7 +93,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
         let shadows: Vec<Shadow> = stage.receivers().par_iter().map(|at| shadow(&stage, at)).collect();
         let share = |kind| shadows.iter().filter(|s| **s == kind).count() as f64 / shadows.len().max(1) as f64;
-        let few = Target::of(&stage, spread(stage.receivers(), session.options.pixels));
+        let few = Target::of(&stage, spread(stage.receivers(), session.pixels(PIXELS)));
         let reference = Reference::compute(&few, OWN, &session.options.cache, session.watch)?;
 
         let mut samplers = Vec::new();
@@ -117,24 +116,24 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             let series = format!("{name} {points}");
             let mut errors = Vec::new();
             for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
-                let mut cells: Vec<Cell> = vec![
+                let mut row: Vec<Cell> = vec![
                     series.as_str().into(),
                     f64::from(side).into(),
                     share(Shadow::Umbra).into(),
                     share(Shadow::Penumbra).into(),
                     u64::from(*rays).into(),
                     found.rays.into(),
-                    found.cpu_s.into(),
                 ];
-                cells.extend(both(found.rel_mse));
-                writer.row("rays", cells)?;
+                row.extend(cells(found.cpu_s));
+                row.extend(cells(found.rel_mse));
+                writer.row("rays", row)?;
                 errors.push((found.rays, found.rel_mse.mean));
             }
             let law = PowerLaw::fit(errors);
-            writer.row(
-                "laws",
-                vec![series.as_str().into(), law.map(|l| l.exponent).into(), law.map(|l| l.residual).into()],
-            )?;
+            let mut row: Vec<Cell> = vec![series.as_str().into()];
+            row.extend(cells(law.map(|law| law.exponent)));
+            row.push(law.map(|law| law.residual).into());
+            writer.row("laws", row)?;
         }
         let shown = samplers.iter().filter(|(points, ..)| *points == "random");
         let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
@@ -150,7 +149,9 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
          penumbra (orange)"
     );
-    image::write(&writer.picture("shadows.png", title), &sheet(&rows, size), exposure)?;
+    if let Some(path) = writer.picture("shadows.png", title)? {
+        image::write(&path, &sheet(&rows, size), exposure)?;
+    }
     Ok(())
 }
 

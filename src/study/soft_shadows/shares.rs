@@ -1,6 +1,6 @@
 //! Which lights should the rays of a budget go to: how near is the lecture's heuristic to the best?
 
-use super::measure::{Contender, measure};
+use super::measure::{Contender, PIXELS, measure};
 use super::scene::several_lights;
 use crate::base::error::Result;
 use crate::base::random::Stream;
@@ -16,7 +16,7 @@ use crate::strategy::BuildContext;
 use crate::strategy::allocate::Sampler;
 use crate::strategy::registry::parse;
 use crate::study::Session;
-use crate::study::table::{both, column, interval, plot};
+use crate::study::table::{cells, column, interval, plot};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
@@ -34,19 +34,17 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
         column("passes", "points a\ntriangle", Format::Whole),
         column("by", "shared out by", Format::Name),
         column("rays", "rays a\nreceiver", Format::Number),
-        column("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds),
     ];
+    columns.extend(interval("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds));
     columns.extend(interval("mse", "MSE", Format::Number));
-    columns.extend([
-        column("gain", "gain over\nfixed", Format::Number),
-        column("distance", "times the\noptimal", Format::Number),
-    ]);
+    columns.extend(interval("gain", "gain over\nfixed", Format::Number));
+    columns.extend(interval("distance", "times the\noptimal", Format::Number));
     TableRecord {
         name: "shares".into(),
         title: "which light the rays go to: six lights from a lamp to a sign".into(),
         columns,
         notes: vec![
-            format!("{} receivers; independent points; MSE in (cd/m^2)^2, which is what the optimal shares minimise.", session.options.pixels),
+            format!("{} receivers; independent points; MSE in (cd/m^2)^2, which is what the optimal shares minimise.", session.pixels(PIXELS)),
             "fixed counts: `all`, the same number for each triangle at each receiver; the others have as many points in all. heuristic: solid \
              angle x radiance x albedo, as the lecture has it, made unbiased by Russian roulette (`allocate`)."
                 .into(),
@@ -61,7 +59,7 @@ pub(super) fn table(session: &Session<'_>) -> TableRecord {
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
     let stage = Stage::new(several_lights(session)?, LeaveOut::Yes, Offset::SCALED);
-    let target = Target::of(&stage, spread(stage.receivers(), session.options.pixels));
+    let target = Target::of(&stage, spread(stage.receivers(), session.pixels(PIXELS)));
     let receivers: &[Receiver] = &target.frame;
     let reference = Reference::compute(&target, 1e-5, &session.options.cache, session.watch)?;
     let moments: Vec<Vec<Moment>> = receivers.par_iter().map(|at| pilot(&stage, at, session.options.seed)).collect();
@@ -91,10 +89,12 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
     let measured = measure(session, "shares of rays", &contenders, receivers, &reference.truth)?;
     for (count, found) in COUNTS.into_iter().zip(measured.chunks_exact(3)) {
         for (by, own) in [FIXED, HEURISTIC, BEST].into_iter().zip(found) {
-            let mut cells: Vec<Cell> = vec![u64::from(count).into(), by.into(), own.rays.into(), own.cpu_s.into()];
-            cells.extend(both(own.mse));
-            cells.extend([(found[0].mse.mean / own.mse.mean).into(), (own.mse.mean / found[2].mse.mean).into()]);
-            writer.row("shares", cells)?;
+            let mut row: Vec<Cell> = vec![u64::from(count).into(), by.into(), own.rays.into()];
+            row.extend(cells(own.cpu_s));
+            row.extend(cells(own.mse()));
+            row.extend(cells(found[0].mse_over(own)));
+            row.extend(cells(own.mse_over(&found[2])));
+            writer.row("shares", row)?;
         }
     }
     Ok(())

@@ -1,10 +1,10 @@
 //! How should points on a light be drawn, and where does drawing them by angle pay?
 
-use super::measure::{Contender, measure};
+use super::measure::{Contender, PIXELS, measure};
 use super::scene::{HEIGHT, SIZES, one_light};
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::measure::clock::timed;
+use crate::measure::engine::Meter;
 use crate::measure::reference::Reference;
 use crate::measure::target::{Target, spread};
 use crate::record::study::{Cell, Format, TableRecord};
@@ -16,7 +16,7 @@ use crate::shading::contribution::contribution;
 use crate::strategy::BuildContext;
 use crate::strategy::registry::parse;
 use crate::study::Session;
-use crate::study::table::{both, column, interval, plot};
+use crate::study::table::{cells, column, interval, plot};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use glam::Vec3;
@@ -77,13 +77,10 @@ pub(super) fn table() -> TableRecord {
 }
 
 pub(super) fn by_size() -> TableRecord {
-    let mut columns = vec![
-        column("light", "light", Format::Words),
-        column("by", "points by", Format::Name),
-        column("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds),
-    ];
+    let mut columns = vec![column("light", "light", Format::Words), column("by", "points by", Format::Name)];
+    columns.extend(interval("cpu_s_a_receiver", "CPU ns\na receiver", Format::Nanoseconds));
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
-    columns.push(column("cost_cpu_s", "relMSE x\nCPU ns", Format::Nanoseconds));
+    columns.extend(interval("cost_cpu_s", "relMSE x\nCPU ns", Format::Nanoseconds));
     TableRecord {
         name: "by-size".into(),
         title: format!(
@@ -106,7 +103,8 @@ const NEAR: (f32, f32) = (2.0, 1.2);
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
     for power in RATIOS {
         session.watch.check()?;
-        writer.row("ways", at_ratio(2f32.powi(power), session.options.seed))?;
+        let ratio = 2f32.powi(power);
+        writer.row("ways", session.engine().alone(|meter| at_ratio(ratio, session.options.seed, meter))?)?;
     }
     let sizes = SIZES.map(|(name, side)| (name, side, HEIGHT));
     for (name, side, height) in sizes.into_iter().chain([("near", NEAR.0, NEAR.1)]) {
@@ -117,7 +115,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
                 Ok(stage.with_light_sampling(by))
             })
             .collect::<Result<Vec<_>>>()?;
-        let target = Target::of(&stages[0], spread(stages[0].receivers(), session.options.pixels));
+        let target = Target::of(&stages[0], spread(stages[0].receivers(), session.pixels(PIXELS)));
         let reference = Reference::compute(&target, 1e-6, &session.options.cache, session.watch)?;
         let strategy = parse("all")?;
         let samplers = stages
@@ -132,17 +130,18 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         let measured =
             measure(session, &format!("{name} light, by way"), &contenders, &target.frame, &reference.truth)?;
         for ((by, _), found) in LightSampling::NAMED.iter().zip(&measured) {
-            let mut cells: Vec<Cell> = vec![name.into(), (*by).into(), found.cpu_s.into()];
-            cells.extend(both(found.rel_mse));
-            cells.push((found.rel_mse.mean * found.cpu_s).into());
-            writer.row("by-size", cells)?;
+            let mut row: Vec<Cell> = vec![name.into(), (*by).into()];
+            row.extend(cells(found.cpu_s));
+            row.extend(cells(found.rel_mse));
+            row.extend(cells(found.cost_s()));
+            writer.row("by-size", row)?;
         }
     }
     Ok(())
 }
 
 /// Variance and time of each way where a triangle's area over its squared distance is `ratio`.
-fn at_ratio(ratio: f32, seed: u64) -> Vec<Cell> {
+fn at_ratio(ratio: f32, seed: u64, meter: Meter<'_>) -> Vec<Cell> {
     let mut rng = Stream::keyed(&[seed, u64::from(ratio.to_bits()), u64::from_le_bytes(*b"by ratio")]);
     let pairs: Vec<(Light, Receiver)> =
         std::iter::repeat_with(|| pair(ratio, &mut rng)).flatten().take(PAIRS).collect();
@@ -150,7 +149,7 @@ fn at_ratio(ratio: f32, seed: u64) -> Vec<Cell> {
     let found = WAYS.map(|by| {
         let variances = pairs.iter().map(|(light, at)| variance(by, light, at, &numbers));
         let variance = variances.sum::<f64>() / PAIRS as f64;
-        let ((), spent) = timed(|| {
+        let ((), spent) = meter.time(|| {
             for (light, at) in &pairs {
                 for &uv in &numbers {
                     _ = black_box(contribution::<0b1111>(by, light, uv, at));

@@ -1,0 +1,153 @@
+//! How good is each strategy within a budget?
+//!
+//! What an experiment needs of a comparison: the same units by the same engine, without checks and without files. Whole
+//! frames are rendered and timed; errors are taken where the target is measured.
+//!
+//! An oracle is never timed, and looks at each receiver alone: it is run where errors are taken, or at some of these.
+
+use super::Session;
+use crate::base::error::Result;
+use crate::measure::errors::Truth;
+use crate::measure::experiment::{Experiment, Nowhere, Runs};
+use crate::measure::figure::Figure;
+use crate::measure::plan::{Budget, Pilot, RECEIVERS};
+use crate::measure::summary;
+use crate::measure::target::{Target, places};
+use crate::record::{Claim, Interval, Row, Summary};
+use crate::strategy::Role;
+use crate::strategy::registry::Configured;
+
+/// What strategies are tried on.
+pub(super) struct Trial<'a> {
+    pub(super) session: &'a Session<'a>,
+    /// The frame, and where errors are taken.
+    pub(super) target: &'a Target<'a>,
+    /// What the radiance is there.
+    pub(super) truth: &'a Truth,
+}
+
+/// The budgets of a strategy: numbers of passes of 1, 4, 16 and so on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Budgets {
+    /// The largest that it can afford.
+    Largest,
+    /// All up to that.
+    All,
+}
+
+/// What the runs of a strategy gave.
+pub(super) struct Tried {
+    pub(super) summary: Summary,
+    runs: Runs,
+}
+
+/// Nobody looks at an oracle's time: it may do more work than the others, but not for ever.
+const PATIENCE: f64 = 4.0;
+
+impl Trial<'_> {
+    /// Runs every strategy; one that can afford no pass, or fails, has no figures and says why.
+    pub(super) fn run(&self, strategies: &[&Configured], budgets: Budgets) -> Result<Vec<Tried>> {
+        let mut tried = self.those(false, strategies, budgets)?;
+        if strategies.iter().any(|strategy| is_oracle(strategy)) {
+            let some: Vec<usize> = places(self.target.places.len(), RECEIVERS).collect();
+            let target = Target::of(self.target.stage, self.target.thinned(RECEIVERS).measured());
+            let truth = self.truth.only(&some);
+            let alone = Trial { target: &target, truth: &truth, ..*self };
+            let oracles = alone.those(true, strategies, budgets)?;
+            let both = strategies.iter().zip(&mut tried).zip(oracles);
+            for ((_, tried), oracle) in both.filter(|((strategy, _), _)| is_oracle(strategy)) {
+                *tried = oracle;
+                tried.summary.receivers = Some(some.len() as u64);
+            }
+        }
+        Ok(tried)
+    }
+
+    /// Runs those that are oracles, or those that are not; the others have no figures.
+    fn those(&self, oracles: bool, strategies: &[&Configured], budgets: Budgets) -> Result<Vec<Tried>> {
+        let Session { options, watch, .. } = self.session;
+        let engine = self.session.engine();
+        let rough = self.truth.thinned(RECEIVERS);
+        watch.begin("pilots", strategies.len() as u64);
+        let mut pilots: Vec<Option<Result<Pilot>>> = Vec::new();
+        for &strategy in strategies {
+            watch.check()?;
+            let pilot = || engine.alone(|meter| Pilot::run(self.target, &rough, strategy, options.seed, meter));
+            pilots.push(if is_oracle(strategy) == oracles { Some(pilot()?) } else { None });
+            watch.advance(1);
+        }
+        watch.end();
+        let patience = if oracles { PATIENCE } else { 1.0 };
+        let budget = Budget::up_to(options.passes, patience * options.seconds);
+        let ladder = |pilot: &Option<Result<Pilot>>| {
+            let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
+            let mut ladder = pilot.map_or_else(Vec::new, |pilot| pilot.ladder(budget, options.repeats));
+            if budgets == Budgets::Largest {
+                ladder.drain(..ladder.len().saturating_sub(1));
+            }
+            ladder
+        };
+        let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
+        let experiment = Experiment {
+            engine: &engine,
+            target: self.target,
+            truth: self.truth,
+            strategies,
+            ladders: &ladders,
+            runs: options.repeats,
+            seed: options.seed,
+        };
+        let (runs, _) = experiment.run(&mut Nowhere, *watch)?;
+        let tried =
+            strategies.iter().zip(&pilots).zip(&ladders).zip(runs).map(|(((strategy, pilot), ladder), runs)| {
+                let (summary, _) = summary::of(strategy, pilot.as_ref(), ladder, &runs, self.truth);
+                Tried { summary, runs }
+            });
+        Ok(tried.collect())
+    }
+}
+
+fn is_oracle(strategy: &Configured) -> bool {
+    strategy.info().role == Role::Oracle
+}
+
+impl Tried {
+    /// A figure made of the means of two values over the runs at a number of passes.
+    pub(super) fn of_means(&self, passes: u32, values: [fn(&Row) -> f64; 2], of: impl Fn([f64; 2]) -> f64) -> Figure {
+        let rows = self.at(passes);
+        of_means(values.map(|value| rows.iter().map(|row| value(row)).collect()), of)
+    }
+
+    /// Its runs at a number of passes; empty where there are none.
+    pub(super) fn at(&self, passes: u32) -> Vec<&Row> {
+        self.runs.at(passes)
+    }
+
+    /// CPU seconds of a sample of the frame, coming to the receiver included: none of one that is not timed.
+    pub(super) fn sample_s(&self, frame: usize) -> Option<Interval> {
+        let samples = f64::from(self.summary.passes) * frame as f64;
+        self.is_timed().then(|| self.summary.cpu_s.times(1.0 / samples))
+    }
+
+    /// Whether its time means something.
+    pub(super) fn is_timed(&self) -> bool {
+        self.summary.runs > 0 && self.summary.claim != Claim::Oracle
+    }
+}
+
+/// The mean over runs of a value.
+pub(super) fn mean(rows: &[&Row], value: fn(&Row) -> f64) -> Figure {
+    Figure::mean(rows.iter().map(|row| value(row)).collect())
+}
+
+/// A positive figure made of the means of several values over the same runs.
+pub(super) fn of_means<const N: usize>(values: [Vec<f64>; N], of: impl Fn([f64; N]) -> f64) -> Figure {
+    let mean = |values: &Vec<f64>, without: Option<usize>| {
+        let kept = values.iter().enumerate().filter(|(run, _)| Some(*run) != without);
+        kept.map(|(_, value)| value).sum::<f64>() / (values.len() - usize::from(without.is_some())) as f64
+    };
+    let figure = |without| of(std::array::from_fn(|i| mean(&values[i], without)));
+    let runs = values.iter().map(Vec::len).min().unwrap_or(0);
+    // Nothing has a logarithm where there is no error in any run.
+    if figure(None) == 0.0 { Figure::mean(vec![0.0; runs]) } else { Figure::jackknife(runs, true, figure) }
+}
