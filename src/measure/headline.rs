@@ -30,10 +30,7 @@ pub struct Headline {
 /// Reads every row's curve, and ranks the unbiased ones.
 pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
     let times_s = times(entries);
-    for entry in &mut *entries {
-        entry.summary.seconds_to = ERRORS.map(|error| entry.seconds_to(error).0).to_vec();
-        entry.summary.error_at = times_s.iter().map(|&seconds| entry.error_at(seconds)).collect();
-    }
+    entries.iter_mut().for_each(|entry| entry.read_at(&times_s));
     let ranked_by = ranked_by(entries);
     let ranked: Vec<usize> = (0..entries.len()).filter(|&i| entries[i].is_ranked(ranked_by)).collect();
     let figures: Vec<Figure> = ranked.iter().map(|&i| entries[i].seconds_to(ERRORS[ranked_by]).1).collect();
@@ -45,6 +42,13 @@ pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
 }
 
 impl Entry<'_> {
+    /// Reads its curve at [`ERRORS`] and at `times_s`: all that a row takes which is ranked among no others, another
+    /// renderer's.
+    pub fn read_at(&mut self, times_s: &[f64]) {
+        self.summary.seconds_to = ERRORS.map(|error| self.seconds_to(error).0).to_vec();
+        self.summary.error_at = times_s.iter().map(|&seconds| self.error_at(seconds)).collect();
+    }
+
     /// CPU seconds to an error, with what each run says of them.
     fn seconds_to(&self, error: f64) -> (Reading, Figure) {
         let (how, figure) = self.curve.seconds_to(error, |without| self.counted_bias2(without));

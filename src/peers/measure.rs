@@ -1,7 +1,7 @@
 //! A peer's images as rows, on the same receivers and against the same reference as those of the strategies.
 //!
-//! A script renders all its runs in one process: what comes before the first sample is paid once and is its set-up. Its
-//! time is its own CPU time; what exactly, its remarks say.
+//! A script renders all its runs in one process: what is paid once is its set-up, and each image is rendered in one block.
+//! Its time is its own CPU time; what exactly, its remarks say.
 
 use super::agreement::{Agreement, SIDE};
 use super::mask;
@@ -12,9 +12,11 @@ use crate::base::file::write_whole;
 use crate::base::random::RunKey;
 use crate::export::export;
 use crate::image::exr;
+use crate::measure::curve::Curve;
 use crate::measure::errors::Truth;
 use crate::measure::experiment::Runs;
 use crate::measure::films::Films;
+use crate::measure::headline::Entry;
 use crate::measure::observer::Observer;
 use crate::measure::summary::summarise;
 use crate::measure::target::Target;
@@ -32,8 +34,10 @@ pub struct Options<'a> {
     pub peers: &'a [Peer],
     /// The Python that has them.
     pub python: &'a Path,
-    /// Sample counts, ascending; the script is not run if there are none.
+    /// Sample counts, ascending, as many as the passes of a strategy: [`budgets`](crate::measure::plan::budgets).
     pub spp: &'a [u32],
+    /// CPU seconds at which errors are given: those of the scene.
+    pub times_s: &'a [f64],
     /// Independent runs.
     pub runs: u32,
     /// The user's seed.
@@ -310,10 +314,14 @@ impl<'a> Session<'a> {
     }
 
     fn summary(&self) -> Summary {
+        let Options { spp, times_s, .. } = *self.ground.options;
         let mut rows = self.rows.clone();
         rows.sort_by_key(|row| (row.passes, row.run));
         let runs = Runs { rows, images: self.images.values().cloned().collect() };
-        summarise(self.blank(), &self.ground.truth, &runs, self.ground.options.spp).0
+        let (mut summary, jackknife) = summarise(self.blank(), &self.ground.truth, &runs, spp);
+        // Read as the strategies are, at the same errors and times; but it says nothing of its bias, so it has no rank.
+        Entry { summary: &mut summary, curve: Curve::of(&runs, spp), jackknife }.read_at(times_s);
+        summary
     }
 
     /// What a reader must know, as lines under the scene.
