@@ -4,6 +4,7 @@
 //! give the same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
 
 mod chart;
+mod complete;
 mod facts;
 mod headline;
 mod mark;
@@ -112,6 +113,14 @@ pub enum Drift {
     /// It is not there.
     #[error("{}: missing", .0.display())]
     Missing(PathBuf),
+    /// Raw rows that are doubled, missing or of nothing that was run.
+    #[error("{}: {what}", .file.display())]
+    Rows {
+        /// The file that they stand in, or should.
+        file: PathBuf,
+        /// Which they are.
+        what: String,
+    },
     /// It says something else, from this line on.
     #[error("{}:{line}: differs from the raw rows", .file.display())]
     Differs {
@@ -122,9 +131,10 @@ pub enum Drift {
     },
 }
 
-/// Compares the pages and plots in a result folder with what its raw rows say; none differs where the list is empty.
+/// Looks for raw rows that are doubled or missing, and compares the pages and plots in a result folder with what the
+/// rows say; all is right where the list is empty.
 pub fn check(folder: &Path) -> Result<Vec<Drift>> {
-    let mut drifts = Vec::new();
+    let mut drifts: Vec<Drift> = faults(folder)?;
     for Derived { name, text } in read(folder)? {
         let file = folder.join(name);
         match fs::read(&file) {
@@ -135,6 +145,15 @@ pub fn check(folder: &Path) -> Result<Vec<Drift>> {
         }
     }
     Ok(drifts)
+}
+
+fn faults(folder: &Path) -> Result<Vec<Drift>> {
+    if is_study(folder) {
+        let of = |(table, what): (String, String)| Drift::Rows { file: folder.join(format!("{table}.csv")), what };
+        return Ok(complete::doubled(&read_study(folder)?).into_iter().map(of).collect());
+    }
+    let faults = complete::faults(&store::read_run(folder)?, &store::read_rows(folder)?.rows);
+    Ok(faults.into_iter().map(|what| Drift::Rows { file: folder.join(store::ROWS_FILE), what }).collect())
 }
 
 fn read(folder: &Path) -> Result<Vec<Derived>> {
