@@ -16,6 +16,9 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
     let machine = &run.machine;
     _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", run.command);
     _ = writeln!(text, "- date: {}", run.date);
+    if !run.version.is_empty() {
+        _ = writeln!(text, "- version: {}", run.version);
+    }
     _ = writeln!(text, "- revision: {}", run.revision);
     _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
     _ = writeln!(text, "- compiler: {}; {}", run.compiler, run.flags);
