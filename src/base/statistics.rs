@@ -64,6 +64,13 @@ pub fn unskewed(t: f64, skewness: f64, n: usize) -> f64 {
     t + a / 3.0 * t * t + a * a / 27.0 * t * t * t + a / 6.0
 }
 
+/// The t statistic that [`unskewed`] turns into `t`.
+pub fn skewed(t: f64, skewness: f64, n: usize) -> f64 {
+    let a = skewness / (n.max(1) as f64).sqrt();
+    // Below that the cube root loses more digits than the correction has.
+    if a.abs() < 1e-6 { t } else { ((1.0 + a * (t - a / 6.0)).cbrt() - 1.0) * 3.0 / a }
+}
+
 /// The value below which Student's t with `freedom` degrees of freedom lies with probability `p`.
 #[cfg(feature = "measure")]
 pub fn student_quantile(p: f64, freedom: usize) -> f64 {
@@ -76,6 +83,13 @@ pub fn student_quantile(p: f64, freedom: usize) -> f64 {
 pub fn normal_quantile(p: f64) -> f64 {
     use statrs::distribution::{ContinuousCDF, Normal};
     Normal::standard().inverse_cdf(p)
+}
+
+/// The value below which a gamma law of this shape and scale 1 lies with probability `p`.
+#[cfg(feature = "measure")]
+pub fn gamma_quantile(p: f64, shape: f64) -> f64 {
+    use statrs::distribution::{ContinuousCDF, Gamma};
+    Gamma::new(shape, 1.0).map_or(f64::INFINITY, |g| g.inverse_cdf(p))
 }
 
 /// Two-sided probability of a t statistic at least this far from 0.

@@ -55,6 +55,7 @@ impl<'a> Spread<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::interval::Tail;
     use crate::base::random::Stream;
     use crate::measure::figure::Figure;
 
@@ -70,10 +71,10 @@ mod tests {
             })
             .collect();
         let spread = Spread::of(&truth, &images);
-        let bias2 = Figure::jackknife(16, false, |run| spread.parts(run).bias2).interval();
+        let bias2 = Figure::signed_jackknife(16, |run| spread.parts(run).bias2).interval();
         assert!((bias2.mean * 1.01 - 0.04).abs() < bias2.half_width() * 1.5, "{bias2:?}");
         assert!(bias2.half_width() < 0.004, "{bias2:?}");
-        let variance = Figure::jackknife(16, true, |run| spread.parts(run).variance).interval();
+        let variance = Figure::jackknife(16, Tail::NONE, |run| spread.parts(run).variance).interval();
         assert!((variance.mean * 1.01 * 12.0 - 1.0).abs() < 0.02, "{variance:?}");
         assert!(Spread::of(&truth, &images[..1]).parts(None).variance.is_nan(), "one run knows nothing of variance");
     }

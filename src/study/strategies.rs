@@ -10,7 +10,7 @@ use super::table::{cells, claim, column, interval, measured, plot, remark, unbia
 use super::trial::{Budgets, Trial, Tried};
 use super::{Entry, Session};
 use crate::base::error::Result;
-use crate::measure::figure::{CONFIDENCE, Figure};
+use crate::measure::figure::Figure;
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
 use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
@@ -289,7 +289,7 @@ impl Tried {
     fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<Figure>) -> Option<Interval> {
         let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
         let (own, other) = (figure(self)?, figure(to)?);
-        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other, CONFIDENCE) }
+        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other) }
     }
 }
 

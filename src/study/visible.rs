@@ -11,7 +11,7 @@ use super::table::{cells, column, interval, measured, plot, remark};
 use super::trial::{Budgets, Trial, Tried, mean};
 use super::{Entry, Session};
 use crate::base::error::Result;
-use crate::measure::figure::{CONFIDENCE, Figure};
+use crate::measure::figure::{Figure, error};
 use crate::measure::plan::budgets;
 use crate::measure::reference::Reference;
 use crate::measure::target::Target;
@@ -232,7 +232,7 @@ fn figures() -> Vec<ColumnRecord> {
 fn figures_at(tried: &Tried, passes: u32) -> Vec<Cell> {
     let rows = tried.at(passes);
     let timed = |figure: Figure| tried.is_timed().then(|| figure.interval());
-    let mut row = cells(mean(&rows, |row| row.rel_mse).interval()).to_vec();
+    let mut row = cells(error(&rows).interval()).to_vec();
     let outliers =
         tried.of_means(passes, [|row| row.rel_mse, |row| row.rel_mse_trimmed], |[all, trimmed]| all / trimmed);
     row.extend(cells(outliers.interval()));
@@ -254,7 +254,7 @@ impl Tried {
         if std::ptr::eq(self, other) {
             return Some(Interval::certain(1.0));
         }
-        self.product(passes).over(&other.product(passes), CONFIDENCE)
+        self.product(passes).over(&other.product(passes))
     }
 }
 
