@@ -3,6 +3,7 @@
 
 mod common;
 
+use citylights::base::random::RunKey;
 use citylights::measure::clock::{Clock, Cpu, Spent};
 use citylights::measure::compare::{Compared, Options, compare};
 use citylights::measure::engine::{Block, Engine};
@@ -10,7 +11,6 @@ use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
 use citylights::record::{Row, SceneRecord};
-use citylights::base::random::RunKey;
 use citylights::strategy::registry::{parse, parse_list};
 use common::{sixteen, stage};
 use rayon::prelude::*;
@@ -107,7 +107,8 @@ fn every_machine_runs_the_same_budgets() {
     let (_, one) = compared(&Cpu::new(), 3, 1);
     let (_, two) = compared(&Cpu::new(), 3, 2);
     assert_eq!(budgets(&one), budgets(&two));
-    let passes: Vec<u32> = one.iter().filter(|row| row.strategy == "uniform" && row.run == 0).map(|r| r.passes).collect();
+    let passes: Vec<u32> =
+        one.iter().filter(|row| row.strategy == "uniform" && row.run == 0).map(|r| r.passes).collect();
     assert_eq!(passes, [1, 4, 16]);
 }
 
@@ -166,10 +167,16 @@ fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
     // A way with a static of its own must not run beside itself.
     let one = Engine { workers: 1, ..engine };
     let units: Vec<usize> = (0..9 * ways.len()).map(|unit| unit % ways.len()).collect();
-    one.run("ways", &units, &Unobserved, |&way, meter| Ok(meter.time(ways[way].1).1), |&way, spent: Spent| {
-        times[way].push(spent.cpu);
-        Ok(())
-    })
+    one.run(
+        "ways",
+        &units,
+        &Unobserved,
+        |&way, meter| Ok(meter.time(ways[way].1).1),
+        |&way, spent: Spent| {
+            times[way].push(spent.cpu);
+            Ok(())
+        },
+    )
     .expect("done");
     let median = |times: &[f64]| {
         let mut sorted = times.to_vec();
@@ -192,9 +199,8 @@ fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
     };
     let account = engine.run("stray", &[(), ()], &Unobserved, |(), _| Ok(stray()), |(), ()| Ok(())).expect("done");
     assert!(account.stray_share() > 0.8, "{account:?}");
-    let account = engine
-        .run("own", &[(), ()], &Unobserved, |(), _| Ok(drop(spin(20 * ROUNDS))), |(), ()| Ok(()))
-        .expect("done");
+    let account =
+        engine.run("own", &[(), ()], &Unobserved, |(), _| Ok(drop(spin(20 * ROUNDS))), |(), ()| Ok(())).expect("done");
     // Other tests of this process run beside this one.
     println!("without: {account:?}");
 }
