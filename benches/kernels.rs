@@ -195,7 +195,7 @@ struct Bench<'a, 'b> {
 }
 
 impl Bench<'_, '_> {
-    fn of(&mut self, name: &str, one: impl Fn(Seen, DVec3, [f64; 2]) -> f64) {
+    fn of(&mut self, name: &str, one: impl Fn(Seen, DVec3, [f64; 2]) -> f64 + Sync) {
         let (posed, numbers) = (self.posed, self.numbers);
         let all = || posed.iter().zip(numbers).map(|(&(corners, normal), &u)| one(Seen::new(corners), normal, u));
         self.group.bench_function(name, |b| common::per_element(b, posed.len(), || all().sum::<f64>()));
@@ -212,9 +212,9 @@ fn light_tree_pick(criterion: &mut Criterion<Reported>, scene: &str, stage: &Sta
             .and_then(|tree| tree.build(BuildContext { stage, seed: 1 }))
             .expect("a light tree can be built for any scene");
         let block = sampler.begin(frame, 0..PASSES);
-        let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
         group.bench_function(format!("{scene}/{arity}"), |b| {
             common::per_element(b, receivers.len() * PASSES as usize, || {
+                let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
                 worker.fill(&receivers, 0..PASSES, false, &mut buffer);
                 buffer.len()
             });

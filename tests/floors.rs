@@ -170,3 +170,40 @@ fn made_up_violations_are_found() {
     assert_eq!(violations("attic", "b.rs", "").len(), 1);
     assert!(violations("cli", "c.rs", text).is_empty());
 }
+
+/// Ways to read a clock.
+const CLOCKS: [&str; 4] = ["ThreadTime", "ProcessTime", "cpu_time", "Instant"];
+
+/// Files that may, and why.
+const READERS: [(&str, &str); 3] = [
+    ("src/measure/clock.rs", "what the engine reads"),
+    ("src/measure/reference.rs", "the reference says what it cost itself"),
+    ("src/peers/script.rs", "how long another program may be silent"),
+];
+
+/// Lines outside tests that read a clock.
+fn clocks(text: &str) -> Vec<usize> {
+    let text = without_comments(text);
+    let code = text.split("#[cfg(test)]").next().unwrap_or("");
+    let reads = |line: &str| line.split(|c| !is_word(c)).any(|word| CLOCKS.contains(&word));
+    code.lines().zip(1..).filter(|(line, _)| reads(line)).map(|(_, number)| number).collect()
+}
+
+#[test]
+fn nothing_but_the_engine_reads_a_clock_for_a_strategy() {
+    let read: Vec<(String, Vec<usize>)> = sources()
+        .into_iter()
+        .map(|(_, file, text)| (file, clocks(&text)))
+        .filter(|(_, lines)| !lines.is_empty())
+        .collect();
+    let wrong: Vec<_> = read.iter().filter(|(file, _)| READERS.iter().all(|(reader, _)| reader != file)).collect();
+    assert!(wrong.is_empty(), "time strategies through measure::engine: {wrong:?}");
+    for (reader, _) in READERS {
+        assert!(
+            read.iter().any(|(file, _)| file == reader),
+            "{reader} reads no clock any more: strike it off the list"
+        );
+    }
+    let made_up = "use std::time::Instant; // a clock\nfn f() {}\n// Instant::now()\nlet t = ThreadTime::now();\n#[cfg(test)]\nmod tests { use std::time::Instant; }";
+    assert_eq!(clocks(made_up), [1, 4]);
+}

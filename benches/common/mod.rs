@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "each bench is a program of its own and uses a part of this")]
 
 use citylights::base::statistics::Moments;
-use citylights::measure::clock::timed;
+use citylights::measure::clock::Cpu;
+use citylights::measure::engine::{Block, Done, Engine, Meter};
 use citylights::scene::recipe::{self, Overrides};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -113,24 +114,29 @@ pub(crate) fn flat<'a>(criterion: &'a mut Criterion<Reported>, name: &str) -> Be
     group
 }
 
+/// Does `work` as the engine does a unit: in a pool of one thread, whose clock sees all that is started there.
+pub(crate) fn alone<T: Send>(work: impl FnOnce(Meter<'_>) -> T + Send) -> T {
+    Engine { clock: &Cpu::new(), workers: 1, seed: 0 }.alone(work).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// CPU time of `work`, which does `elements` alike things, for one of them; in ns.
-pub(crate) fn per_element<T>(bencher: &mut Bencher<'_, Reported>, elements: usize, mut work: impl FnMut() -> T) {
+pub(crate) fn per_element<T>(bencher: &mut Bencher<'_, Reported>, elements: usize, mut work: impl FnMut() -> T + Send) {
     bencher.iter_custom(|iterations| {
-        let ((), spent) = timed(|| (0..iterations).for_each(|_| drop(black_box(work()))));
-        spent.cpu * 1e9 / elements as f64
+        let all = || (0..iterations).for_each(|_| drop(black_box(work())));
+        alone(|meter| meter.time(all).1.cpu) * 1e9 / elements as f64
     });
 }
 
-/// CPU time of what `make` takes, without dropping what it made; in ns.
-pub(crate) fn making<T>(bencher: &mut Bencher<'_, Reported>, mut make: impl FnMut() -> T) {
-    bencher.iter_custom(|iterations| {
-        let one = |_| {
-            let (made, spent) = timed(&mut make);
-            drop(black_box(made));
-            spent.cpu * 1e9
-        };
-        (0..iterations).map(one).sum()
-    });
+/// CPU time of a part of a block from nothing, as `compare` takes it, for one of `elements` alike things; in ns.
+pub(crate) fn part_of(bencher: &mut Bencher<'_, Reported>, block: Block<'_>, elements: usize, part: fn(&Done) -> f64) {
+    bencher.iter_custom(|iterations| part_s(block, iterations, part) * 1e9 / elements as f64);
+}
+
+/// CPU seconds of a part of so many blocks, each from nothing.
+pub(crate) fn part_s(block: Block<'_>, iterations: u64, part: fn(&Done) -> f64) -> f64 {
+    let one =
+        |meter: Meter<'_>| part(&block.run(meter).unwrap_or_else(|error| panic!("{}: {error}", block.strategy.name())));
+    alone(|meter| (0..iterations).map(|_| one(meter)).sum())
 }
 
 /// CPU time of one thing over that of another, taken in turns within one run.
@@ -140,7 +146,7 @@ pub(crate) struct Duel<A, B> {
     samples: Vec<f64>,
 }
 
-impl<T, U, A: FnMut() -> T, B: FnMut() -> U> Duel<A, B> {
+impl<T, U, A: FnMut() -> T + Send, B: FnMut() -> U + Send> Duel<A, B> {
     /// Two ways to do the same work.
     pub(crate) fn new(ours: A, other: B) -> Self {
         Self { ours, other, samples: Vec::new() }
@@ -171,21 +177,23 @@ impl<T, U, A: FnMut() -> T, B: FnMut() -> U> Duel<A, B> {
     }
 
     fn sample(&mut self, turns: u64) -> f64 {
-        let (mut ours, mut other) = (0.0, 0.0);
-        for turn in 0..turns {
-            if turn % 2 == 0 {
-                ours += cpu(&mut self.ours);
-                other += cpu(&mut self.other);
-            } else {
-                other += cpu(&mut self.other);
-                ours += cpu(&mut self.ours);
+        alone(|meter| {
+            let (mut ours, mut other) = (0.0, 0.0);
+            for turn in 0..turns {
+                if turn % 2 == 0 {
+                    ours += cpu(meter, &mut self.ours);
+                    other += cpu(meter, &mut self.other);
+                } else {
+                    other += cpu(meter, &mut self.other);
+                    ours += cpu(meter, &mut self.ours);
+                }
             }
-        }
-        ours / other
+            ours / other
+        })
     }
 }
 
 /// CPU seconds of `work`.
-fn cpu<T>(work: &mut impl FnMut() -> T) -> f64 {
-    timed(|| black_box(work())).1.cpu
+fn cpu<T>(meter: Meter<'_>, work: &mut impl FnMut() -> T) -> f64 {
+    meter.time(|| black_box(work())).1.cpu
 }

@@ -63,12 +63,8 @@ pub struct Pilot {
 /// Receivers of a pilot's errors.
 pub const RECEIVERS: usize = 512;
 
-/// Work is counted at so many squares of the frame, of [`SQUARE`] neighbours each: a strategy may share what it does
-/// among neighbours.
+/// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
 const SQUARES: usize = 16;
-
-/// Neighbours of a square. Receivers follow squares of 8 x 8 pixels.
-const SQUARE: usize = 64;
 
 /// A bias of the image's mean that runs should be able to see.
 pub const DETECTABLE: f64 = 0.05;
@@ -118,7 +114,7 @@ impl Pilot {
         // Receivers are independent of one another: their mean has an n-th of their variance.
         let measured = target.places.len().max(1) as f64;
         let energy_variance = if energy > 0.0 { of_pixel / (measured * energy * energy) } else { 0.0 };
-        let counted = if whole { frame.to_vec() } else { squares(frame) };
+        let counted = if whole { frame.to_vec() } else { target::squares(frame, SQUARES) };
         let count = |passes| plan(&counted, 3).run_counting(passes, &mut Film::new(counted.len()));
         let scale = frame.len() as f64 / counted.len().max(1) as f64;
         let counts = count(PASSES);
@@ -173,15 +169,6 @@ impl Pilot {
 pub fn budgets(most: u32) -> impl Iterator<Item = u32> {
     let powers = (0..16).map(|power| 1u32 << (2 * power)).take_while(move |&passes| passes < most);
     powers.chain((most > 0).then_some(most))
-}
-
-/// Squares of neighbouring receivers, spread over a frame.
-fn squares(frame: &[Receiver]) -> Vec<Receiver> {
-    if frame.len() <= SQUARES * SQUARE {
-        return frame.to_vec();
-    }
-    let begins = target::places(frame.len() / SQUARE, SQUARES);
-    begins.flat_map(|square| frame[square * SQUARE..][..SQUARE].iter().copied()).collect()
 }
 
 #[cfg(test)]

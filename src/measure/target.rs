@@ -58,6 +58,18 @@ pub fn spread(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
     places(receivers.len(), count).map(|i| receivers[i]).collect()
 }
 
+/// Neighbours of a square. Receivers follow squares of 8 x 8 pixels.
+pub const SQUARE: usize = 64;
+
+/// `count` squares of [`SQUARE`] neighbouring receivers at equal steps through the list; all of it where it is shorter.
+pub fn squares(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
+    if receivers.len() <= count * SQUARE {
+        return receivers.to_vec();
+    }
+    let begins = places(receivers.len() / SQUARE, count).map(|square| square * SQUARE);
+    begins.flat_map(|begin| receivers[begin..][..SQUARE].iter().copied()).collect()
+}
+
 /// Where [`spread`] finds its receivers in a list of `all`.
 pub fn places(all: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(all);

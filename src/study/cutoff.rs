@@ -8,7 +8,7 @@ use super::area::by_area;
 use super::plane::{closed_form, plane};
 use super::quality::unshadowed;
 use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
-use super::trial::{Budgets, Trial, Tried};
+use super::trial::{Budgets, Tried};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::errors::Truth;
@@ -275,8 +275,7 @@ fn try_all(
     let sums: Vec<Vec3> = target.measured().par_iter().map(sum).collect();
     session.watch.end();
     let truth = Truth::new([sums.clone(), sums]);
-    let trial = Trial { session, target: &target, truth: &truth };
-    for tried in trial.run(&strategies.iter().collect::<Vec<_>>(), Budgets::Largest)? {
+    for tried in session.trial(&target, &truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)? {
         let mut row = vec![(stage.scene().lights().len() as u64).into()];
         row.extend(bias_cells(&tried, &target));
         writer.row(table, row)?;

@@ -15,7 +15,7 @@ mod scaling;
 mod soft_shadows;
 mod strategies;
 mod table;
-mod trial;
+pub mod trial;
 mod visible;
 
 use crate::base::error::{Error, Result};
@@ -23,7 +23,9 @@ use crate::base::names;
 use crate::measure::clock::{Clock, Cpu};
 use crate::measure::engine::Engine;
 use crate::measure::environment;
+use crate::measure::errors::Truth;
 use crate::measure::observer::Observer;
+use crate::measure::plan::Budget;
 use crate::measure::reference::{Reference, scene_hash};
 use crate::measure::target::Target;
 use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
@@ -35,6 +37,7 @@ use crate::scene::file::Overrides;
 use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured, STRATEGIES};
 use std::path::{Path, PathBuf};
+use trial::{Budgets, Trial, Tried};
 
 /// Every study, in the order of `citylights list studies`.
 pub const STUDIES: [Entry; 6] =
@@ -141,6 +144,20 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
+    /// Tries strategies on a target within what a run may spend.
+    fn trial(
+        &self,
+        target: &Target<'_>,
+        truth: &Truth,
+        strategies: &[&Configured],
+        budgets: Budgets,
+    ) -> Result<Vec<Tried>> {
+        let Options { passes, seconds, repeats, seed, .. } = *self.options;
+        let budget = Budget::up_to(passes, seconds);
+        let trial = Trial { engine: &self.engine(), target, truth, budget, runs: repeats, seed };
+        trial.run(strategies, budgets, self.watch)
+    }
+
     /// What times strategies.
     fn engine(&self) -> Engine<'_> {
         Engine { clock: &self.clock, workers: self.options.threads, seed: self.options.seed }

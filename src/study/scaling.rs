@@ -6,7 +6,7 @@
 use super::cutoff::sizes;
 use super::fit::PowerLaw;
 use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
-use super::trial::{Budgets, Trial, Tried};
+use super::trial::{Budgets, Tried};
 use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::summary::blank;
@@ -158,8 +158,7 @@ fn at_size(
     // Every arrival of the oracle takes as many rays as the truth.
     let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle;
     let strategies: Vec<&Configured> = strategies.iter().filter(within).collect();
-    let trial = Trial { session, target: &target, truth: &reference.truth };
-    for tried in trial.run(&strategies, Budgets::Largest)? {
+    for tried in session.trial(&target, &reference.truth, &strategies, Budgets::Largest)? {
         let mut row = vec![(stage.scene().lights().len() as u64).into()];
         row.extend(growth_cells(&tried, &target));
         writer.row("growth", row)?;

@@ -7,7 +7,7 @@
 use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
 use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
-use super::trial::{Budgets, Trial, Tried};
+use super::trial::{Budgets, Tried};
 use super::{Entry, Session};
 use crate::base::error::Result;
 use crate::measure::figure::Figure;
@@ -238,8 +238,7 @@ fn by_measuring(
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let target = Target::whole(&stage).thinned(session.pixels(PIXELS));
     let reference = session.reference(&target)?;
-    let trial = Trial { session, target: &target, truth: &reference.truth };
-    let found = trial.run(&strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let found = session.trial(&target, &reference.truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
     let of = |strategy: &str| found.iter().find(|one| one.summary.strategy == strategy);
     let (oracle, intensity) = (of("oracle"), of("intensity"));
     for one in &found {

@@ -5,12 +5,13 @@
 //!
 //! An oracle is never timed, and looks at each receiver alone: it is run where errors are taken, or at some of these.
 
-use super::Session;
 use crate::base::error::Result;
 use crate::base::interval::Tail;
+use crate::measure::engine::Engine;
 use crate::measure::errors::Truth;
 use crate::measure::experiment::{Experiment, Nowhere, Runs};
 use crate::measure::figure::{Figure, tail};
+use crate::measure::observer::Observer;
 use crate::measure::plan::{Budget, Pilot, RECEIVERS};
 use crate::measure::summary;
 use crate::measure::target::{Target, places};
@@ -18,18 +19,26 @@ use crate::record::{Claim, Interval, Row, Summary};
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
 
-/// What strategies are tried on.
-pub(super) struct Trial<'a> {
-    pub(super) session: &'a Session<'a>,
+/// What strategies are tried on, and how.
+#[derive(Clone, Copy)]
+pub struct Trial<'a> {
+    /// Who times it.
+    pub engine: &'a Engine<'a>,
     /// The frame, and where errors are taken.
-    pub(super) target: &'a Target<'a>,
+    pub target: &'a Target<'a>,
     /// What the radiance is there.
-    pub(super) truth: &'a Truth,
+    pub truth: &'a Truth,
+    /// What each strategy may spend in a run.
+    pub budget: Budget,
+    /// Independent runs.
+    pub runs: u32,
+    /// The user's seed.
+    pub seed: u64,
 }
 
 /// The budgets of a strategy: numbers of passes of 1, 4, 16 and so on.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Budgets {
+pub enum Budgets {
     /// The largest that it can afford.
     Largest,
     /// All up to that.
@@ -37,8 +46,9 @@ pub(super) enum Budgets {
 }
 
 /// What the runs of a strategy gave.
-pub(super) struct Tried {
-    pub(super) summary: Summary,
+pub struct Tried {
+    /// All of them together.
+    pub summary: Summary,
     runs: Runs,
 }
 
@@ -47,14 +57,14 @@ const PATIENCE: f64 = 4.0;
 
 impl Trial<'_> {
     /// Runs every strategy; one that can afford no pass, or fails, has no figures and says why.
-    pub(super) fn run(&self, strategies: &[&Configured], budgets: Budgets) -> Result<Vec<Tried>> {
-        let mut tried = self.those(false, strategies, budgets)?;
+    pub fn run(&self, strategies: &[&Configured], budgets: Budgets, watch: &dyn Observer) -> Result<Vec<Tried>> {
+        let mut tried = self.those(false, strategies, budgets, watch)?;
         if strategies.iter().any(|strategy| is_oracle(strategy)) {
             let some: Vec<usize> = places(self.target.places.len(), RECEIVERS).collect();
             let target = Target::of(self.target.stage, self.target.thinned(RECEIVERS).measured());
             let truth = self.truth.only(&some);
             let alone = Trial { target: &target, truth: &truth, ..*self };
-            let oracles = alone.those(true, strategies, budgets)?;
+            let oracles = alone.those(true, strategies, budgets, watch)?;
             let both = strategies.iter().zip(&mut tried).zip(oracles);
             for ((_, tried), oracle) in both.filter(|((strategy, _), _)| is_oracle(strategy)) {
                 *tried = oracle;
@@ -65,24 +75,28 @@ impl Trial<'_> {
     }
 
     /// Runs those that are oracles, or those that are not; the others have no figures.
-    fn those(&self, oracles: bool, strategies: &[&Configured], budgets: Budgets) -> Result<Vec<Tried>> {
-        let Session { options, watch, .. } = self.session;
-        let engine = self.session.engine();
+    fn those(
+        &self,
+        oracles: bool,
+        strategies: &[&Configured],
+        budgets: Budgets,
+        watch: &dyn Observer,
+    ) -> Result<Vec<Tried>> {
         let rough = self.truth.thinned(RECEIVERS);
         watch.begin("pilots", strategies.len() as u64);
         let mut pilots: Vec<Option<Result<Pilot>>> = Vec::new();
         for &strategy in strategies {
             watch.check()?;
-            let pilot = || engine.alone(|meter| Pilot::run(self.target, &rough, strategy, options.seed, meter));
+            let pilot = || self.engine.alone(|meter| Pilot::run(self.target, &rough, strategy, self.seed, meter));
             pilots.push(if is_oracle(strategy) == oracles { Some(pilot()?) } else { None });
             watch.advance(1);
         }
         watch.end();
         let patience = if oracles { PATIENCE } else { 1.0 };
-        let budget = Budget::up_to(options.passes, patience * options.seconds);
+        let budget = Budget { work_s: patience * self.budget.work_s, ..self.budget };
         let ladder = |pilot: &Option<Result<Pilot>>| {
             let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
-            let mut ladder = pilot.map_or_else(Vec::new, |pilot| pilot.ladder(budget, options.repeats));
+            let mut ladder = pilot.map_or_else(Vec::new, |pilot| pilot.ladder(budget, self.runs));
             if budgets == Budgets::Largest {
                 ladder.drain(..ladder.len().saturating_sub(1));
             }
@@ -90,15 +104,15 @@ impl Trial<'_> {
         };
         let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
         let experiment = Experiment {
-            engine: &engine,
+            engine: self.engine,
             target: self.target,
             truth: self.truth,
             strategies,
             ladders: &ladders,
-            runs: options.repeats,
-            seed: options.seed,
+            runs: self.runs,
+            seed: self.seed,
         };
-        let (runs, _) = experiment.run(&mut Nowhere, *watch)?;
+        let (runs, _) = experiment.run(&mut Nowhere, watch)?;
         let tried =
             strategies.iter().zip(&pilots).zip(&ladders).zip(runs).map(|(((strategy, pilot), ladder), runs)| {
                 let (summary, _) = summary::of(strategy, pilot.as_ref(), ladder, &runs, self.truth);
@@ -120,7 +134,7 @@ impl Tried {
     }
 
     /// Its runs at a number of passes; empty where there are none.
-    pub(super) fn at(&self, passes: u32) -> Vec<&Row> {
+    pub fn at(&self, passes: u32) -> Vec<&Row> {
         self.runs.at(passes)
     }
 

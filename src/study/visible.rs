@@ -8,7 +8,7 @@
 
 use super::cutoff::sizes;
 use super::table::{cells, column, interval, measured, plot, remark};
-use super::trial::{Budgets, Trial, Tried, mean};
+use super::trial::{Budgets, Tried, mean};
 use super::{Entry, Session};
 use crate::base::error::Result;
 use crate::measure::figure::{Figure, error};
@@ -124,9 +124,8 @@ fn step_by_step(
     let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
     let target = target(session, stage);
     let reference = session.reference(&target)?;
-    let trial = Trial { session, target: &target, truth: &reference.truth };
     let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
-    let tried = trial.run(&strategies, Budgets::All)?;
+    let tried = session.trial(&target, &reference.truth, &strategies, Budgets::All)?;
     let of = |name: &str| strategies.iter().zip(&tried).find(|(of, _)| of.name() == name).map(|(_, tried)| tried);
     let (classic, tree) = (of(strategies[0].name()), of("light-tree"));
     for passes in budgets(session.options.passes) {
@@ -153,8 +152,7 @@ fn step_by_step(
 fn sweep_over(session: &Session<'_>, writer: &mut StudyWriter, stage: &Stage, sweep: &[Configured]) -> Result<()> {
     let target = target(session, stage);
     let reference = session.reference(&target)?;
-    let trial = Trial { session, target: &target, truth: &reference.truth };
-    let tried = trial.run(&sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let tried = session.trial(&target, &reference.truth, &sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
     for (strategy, one) in sweep.iter().zip(&tried) {
         let mut row: Vec<Cell> = vec![stage.scene().name().into(), strategy.name().into()];
         if measured(&one.summary) {
