@@ -13,11 +13,11 @@ use crate::visibility::stage::Stage;
 const LEVEL: f64 = 1e-4;
 
 /// Lets right strategies pass.
-pub(super) struct Gate<'a>(Verifier<'a>);
+pub struct Gate<'a>(Verifier<'a>);
 
 impl<'a> Gate<'a> {
     /// A gate for so many strategies on a stage.
-    pub(super) fn new(stage: &'a Stage, strategies: usize, seed: u64) -> Self {
+    pub fn new(stage: &'a Stage, strategies: usize, seed: u64) -> Self {
         // A check fails only if it fails twice.
         let level = sidak(LEVEL, strategies * BY_CHANCE.len()).sqrt();
         let options = Options { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None };
@@ -25,7 +25,7 @@ impl<'a> Gate<'a> {
     }
 
     /// An error that names the check that a strategy fails.
-    pub(super) fn pass(&self, strategy: &Configured) -> Result<()> {
+    pub fn pass(&self, strategy: &Configured) -> Result<()> {
         match self.0.verify(strategy)?.into_iter().find(|check| !check.passed) {
             None => Ok(()),
             Some(check) => Err(Error::Invalid(format!(

@@ -10,7 +10,7 @@ pub mod compare;
 pub mod environment;
 pub mod errors;
 pub mod films;
-mod gate;
+pub mod gate;
 pub mod inspect;
 pub mod observer;
 mod once;
