@@ -29,7 +29,7 @@ fn right_strategies_pass_the_gate_of_a_hundred_comparisons() {
     let strategies: Vec<_> = names.iter().map(|name| parse(name).expect(name)).collect();
     let (clock, mut alarms) = (ProcessTime::now(), Vec::new());
     for seed in 1..=COMPARISONS {
-        let gate = Gate::new(&stage, strategies.len(), seed);
+        let gate = Gate::new(&stage, "scenes/first-night.toml --resolution 64x36", strategies.len(), seed);
         for strategy in strategies.iter().filter(|strategy| strategy.info().role != Role::Oracle) {
             if let Err(error) = gate.pass(strategy) {
                 println!("seed {seed}, {}: {error}", strategy.name());

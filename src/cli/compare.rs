@@ -161,6 +161,7 @@ impl Session {
     fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
         let Asked { arguments, strategies, peers, threads } = *asked;
         let options = Options {
+            typed: &arguments.scene_options.typed(file),
             strategies,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),

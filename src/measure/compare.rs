@@ -26,6 +26,8 @@ use std::sync::mpsc;
 
 /// How a comparison is done.
 pub struct Options<'a> {
+    /// The scene as the user named it, with the options that it was loaded with: for commands that show a failure.
+    pub typed: &'a str,
     /// The strategies.
     pub strategies: &'a [Configured],
     /// What each may spend in one run.
@@ -158,7 +160,7 @@ fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> R
     let few = target.thinned(plan::RECEIVERS);
     let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
-    let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
+    let gate = Gate::new(target.stage, options.typed, options.strategies.len(), options.seed);
     let mut pilots = Vec::new();
     for strategy in options.strategies {
         watch.check()?;

@@ -24,6 +24,8 @@ const REPLAY: &str = "replay";
 const ALLOCATION: &str = "allocation";
 /// Where one of these fails, nothing else can be looked at.
 pub(super) const POSSIBLE: [&str; 2] = [IDS, VALID];
+/// The checks that hold exactly.
+pub(super) const NAMES: [&str; 7] = [IDS, VALID, SEED, THREADS, REPLAY, ALLOCATION, RECIPROCAL];
 pub(super) const PICKS: &str = "picks";
 const RECIPROCAL: &str = "reciprocal";
 

@@ -8,7 +8,7 @@ use crate::base::statistics::{Moments, sidak, skewness, student_p, student_quant
 /// The checks' names.
 pub(super) const ESTIMATE: &str = "estimate";
 pub(super) const IMAGE: &str = "image-mean";
-const BIAS: &str = "bias";
+pub(super) const BIAS: &str = "bias";
 
 /// A difference with its variance and the degrees of freedom that this is known with.
 struct Difference {

@@ -50,6 +50,11 @@ const CHANGES: [(&str, Change, f64); 8] = [
     ("hidden", Change::Hidden, 1e-5),
 ];
 
+/// The names of the checks.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    CHANGES.iter().map(|(name, ..)| *name).chain([VALID, COUNTS])
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Change {
     /// Lengths by this factor, intensities by its square.

@@ -7,6 +7,10 @@
 //! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is
 //! known.
 //!
+//! Two more checks look at several runs ([`Verifier::verify`]): another seed gives other picks, and samplers that are
+//! built alike agree whoever arrives first. The [arithmetic](independent) that strategies are held to is checked too, and
+//! so are the [halves] of a reference and what a strategy is [charged](charged()).
+//!
 //! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left
 //! out here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
 //!
@@ -17,10 +21,12 @@
 
 mod arrival;
 mod calls;
+mod charged;
 mod check;
 mod contract;
 mod coverage;
 mod estimate;
+mod halves;
 pub mod independent;
 pub mod metamorphic;
 mod observe;
@@ -29,8 +35,10 @@ mod seeds;
 mod truth;
 mod weights;
 
+pub use charged::charged;
 pub use check::Check;
 pub use contract::{allocations, picks_in_range, picks_valid};
+pub use halves::halves;
 pub use truth::Truth;
 
 use crate::base::error::Result;
@@ -72,6 +80,12 @@ impl Default for Options {
 /// The checks of levels 0 and 1 that a right strategy may fail by chance.
 pub const BY_CHANCE: [&str; 6] =
     [contract::PICKS, coverage::COVERAGE, weights::WEIGHTS, weights::TOTAL, estimate::ESTIMATE, estimate::IMAGE];
+
+/// The names of the checks of strategies and of the arithmetic of a scene.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    let contract = contract::NAMES.into_iter().chain([seeds::ANOTHER, arrival::ORDER]);
+    contract.chain(BY_CHANCE).chain([estimate::BIAS]).chain(independent::NAMES).chain(metamorphic::names())
+}
 
 /// Whether other numbers could give another verdict.
 fn by_chance(check: &Check) -> bool {

@@ -25,7 +25,6 @@ pub(super) struct Place {
     pub(super) met: DVec3,
     pub(super) normal: DVec3,
     pub(super) albedo: DVec3,
-    pub(super) pixel: u32,
     pub(super) surface: u32,
 }
 
@@ -70,8 +69,8 @@ impl<'a> Geometry<'a> {
         let normal = if slope < 0.0 { across } else { -across };
         let met = eye + ray * (across.dot(p - eye) / slope);
         let albedo = self.scene.materials().get(surface.material as usize)?.albedo.as_dvec3();
-        let (position, pixel, surface) = (at.position.as_dvec3(), at.pixel, at.surface);
-        Some(Place { position, met, normal, albedo, pixel, surface })
+        let (position, surface) = (at.position.as_dvec3(), at.surface);
+        Some(Place { position, met, normal, albedo, surface })
     }
 
     pub(super) fn eye(&self) -> DVec3 {

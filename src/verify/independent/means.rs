@@ -11,8 +11,8 @@ use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
 /// The checks' names.
-const MEAN: &str = "triangle-mean";
-const IMPORTANCE: &str = "importance";
+pub(super) const MEAN: &str = "triangle-mean";
+pub(super) const IMPORTANCE: &str = "importance";
 
 /// Triangles whose mean is taken, how many are tried to find them, and the side of the grid of points on each.
 const MEANS: usize = 64;

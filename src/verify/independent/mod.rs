@@ -35,6 +35,10 @@ use crate::visibility::stage::Stage;
 use geometry::Geometry;
 use glam::DVec3;
 
+/// The checks' names.
+pub(super) const NAMES: [&str; 6] =
+    [receivers::RECEIVERS, pairs::CONTRIBUTION, pairs::VISIBILITY, means::MEAN, means::IMPORTANCE, sums::SUM];
+
 /// Pairs of a receiver and a light that are looked at.
 const PAIRS: usize = 2_000;
 

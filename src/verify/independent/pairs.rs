@@ -11,8 +11,8 @@ use crate::verify::check::Check;
 use glam::DVec3;
 
 /// The checks' names.
-const CONTRIBUTION: &str = "contribution";
-const VISIBILITY: &str = "visibility";
+pub(super) const CONTRIBUTION: &str = "contribution";
+pub(super) const VISIBILITY: &str = "visibility";
 
 /// How many pairs of a kind of light are tried for each that is wanted: of few does anything arrive.
 const TRIES: usize = 200;

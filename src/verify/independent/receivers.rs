@@ -6,7 +6,7 @@ use crate::scene::receiver::Receiver;
 use crate::verify::check::Check;
 
 /// The check's name.
-const RECEIVERS: &str = "receivers";
+pub(super) const RECEIVERS: &str = "receivers";
 
 /// Most receivers whose ray, plane, side and material are looked at.
 const MOST: usize = 1 << 16;

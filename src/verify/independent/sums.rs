@@ -11,7 +11,7 @@ use crate::verify::check::Check;
 use glam::DVec3;
 
 /// The check's name.
-const SUM: &str = "exact-sum";
+pub(super) const SUM: &str = "exact-sum";
 
 /// Most receivers that all lights are summed at, and fewest that tell anything.
 const RECEIVERS: usize = 16;
