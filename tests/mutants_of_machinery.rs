@@ -364,7 +364,9 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
+    use citylights::measure::clock::Cpu;
     use citylights::measure::compare::{Compared, Options, compare};
+    use citylights::measure::engine::Engine;
     use citylights::measure::films::Films;
     use citylights::measure::observer::Unobserved;
     use citylights::measure::plan::Budget;
@@ -372,7 +374,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let folder = tempfile::tempdir().expect("a folder");
     let stage = stage(sixteen());
     let strategies = ["right", "descent"].map(mutant);
-    let budget = Budget { usual_passes: 4, most_passes: 4, seconds: 1.0 };
+    let budget = Budget::up_to(4, 1.0);
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &Films::of(folder, "mutants");
     let engine = &Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
