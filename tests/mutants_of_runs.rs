@@ -173,7 +173,8 @@ fn failed(entries: &[Entry], name: &str, stage: &Stage) -> Vec<&'static str> {
 fn runs_that_repeat_one_another_are_found() {
     let stage = stage(sixteen());
     assert_eq!(failed(MUTANTS, "pairs", &stage), ["another-seed"]);
-    assert_eq!(failed(MUTANTS, "fours", &stage), ["another-seed"]);
+    // So few batches that differ fail the statistics as well.
+    assert!(failed(MUTANTS, "fours", &stage).contains(&"another-seed"));
 }
 
 #[test]
