@@ -399,3 +399,15 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     assert!(error(1).is_some_and(|text| line(text) && !text.contains('\n')), "{:?}", error(1));
     assert!(rows.iter().all(|row| row.strategy != "descent"), "a wrong strategy was timed");
 }
+
+#[test]
+fn the_command_of_the_gate_shows_what_the_gate_saw() {
+    use citylights::measure::gate::{Gate, options};
+    let stage = stage(sixteen());
+    let error = Gate::new(&stage, "sixteen.toml", 17, 3).pass(&mutant("descent")).expect_err("a wrong strategy");
+    // What `verify --gate --seed 3 --strategies descent` does: of one strategy, not of seventeen.
+    let checks = Verifier::new(&stage, options(1, 3)).verify(&mutant("descent")).expect("a sampler");
+    let shown = checks.iter().find(|check| !check.passed).expect("a failure");
+    let line = format!("failed check `{}`{}: statistic {:.3e}", shown.name, shown.place(), shown.statistic);
+    assert!(error.to_string().starts_with(&line), "{error}\n{shown}");
+}
