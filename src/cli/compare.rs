@@ -8,7 +8,7 @@ use crate::measure::compare::{Compared, Options, compare};
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
-use crate::measure::reference::scene_hash;
+use crate::measure::reference::{WORK_S, scene_hash};
 use crate::peers::{self, Peer};
 use crate::record::store::{RUN_FILE, RowWriter, create_folder, file_name, read_run, write_run};
 use crate::record::{Machine, Row, RunRecord, SCHEMA};
@@ -56,6 +56,10 @@ pub(super) struct Arguments {
     /// The result folder; a new one under results/ by default. An interrupted comparison there is resumed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Most work of a scene's reference, in nominal CPU seconds: 230 ns a shadow ray and 20 ns a light and receiver,
+    /// whatever the machine takes. Where that is not enough, errors are taken at fewer receivers, 256 at least
+    #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
+    reference_work: f64,
     /// Folder of finished tiles of references
     #[arg(long, value_name = "DIR", default_value = CACHE)]
     cache: PathBuf,
@@ -170,6 +174,7 @@ impl Session {
             repeats: arguments.repeats,
             seed: arguments.seed,
             threads: threads as usize,
+            reference_work_s: arguments.reference_work,
             cache: &arguments.cache,
             folder: &self.folder,
         };
@@ -225,7 +230,7 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
     let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s; {} runs; seed {}; reference {} s; {}",
             scenes.join(" "),
             strategies.join(" "),
             peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
@@ -233,6 +238,7 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
             arguments.seconds,
             arguments.repeats,
             arguments.seed,
+            arguments.reference_work,
             arguments.scene_options.describe()
         ),
         schema: SCHEMA,

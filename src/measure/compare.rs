@@ -7,7 +7,7 @@ use super::observer::Observer;
 use super::once::Once;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
-use super::reference::{Reference, scene_hash};
+use super::reference::{Reference, Wanted, scene_hash};
 use super::summary::{blank, counts, summarise};
 use super::target::Target;
 use super::trials::shuffle;
@@ -36,6 +36,8 @@ pub struct Options<'a> {
     pub seed: u64,
     /// Runs side by side.
     pub threads: usize,
+    /// Most counted work of a reference, in nominal CPU seconds.
+    pub reference_work_s: f64,
     /// Folder of cached references.
     pub cache: &'a Path,
     /// The result folder.
@@ -77,8 +79,9 @@ pub fn compare<'a>(
         Some(pilot.expected_rel_mse(*ladder.last()?))
     });
     // A hundredth of the best row's error, with some room for the pilot's own noise; never below what f32 can hold.
-    let wanted = best.fold(1e-2, f64::min).max(1e-8) / 150.0;
-    let reference = Reference::compute(&target, wanted, options.cache, watch)?;
+    let own_rel_mse = best.fold(1e-2, f64::min).max(1e-8) / 150.0;
+    let wanted = Wanted { work_s: options.reference_work_s, ..Wanted::new(own_rel_mse) };
+    let (target, reference) = Reference::bounded(&target, wanted, options.cache, watch)?;
     let mut comparison = Comparison {
         target: &target,
         reference: &reference,
@@ -100,6 +103,7 @@ pub fn compare<'a>(
     let images = |index| (0..options.repeats).filter_map(|run| image(index, run)).collect();
     oracle::settle(&target, &reference.truth, options, images, &mut summaries, watch)?;
     let mut notes = stage.scene().notes().to_vec();
+    notes.extend(reference.notes(&target, wanted));
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
     }
@@ -151,7 +155,7 @@ fn record(
 /// One for each strategy; none for those that are not run against the clock.
 fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Result<Pilot>>>> {
     let few = target.thinned(plan::RECEIVERS);
-    let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
+    let rough = Reference::compute(&few, 1e-3, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
     let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
     let mut pilots = Vec::new();

@@ -22,7 +22,7 @@ pub struct ReferenceRecord {
     pub cpu_s: f64,
     /// Whether it came from the cache.
     pub cached: bool,
-    /// Whether it covers the fixed subset of receivers only (1,024 of them) rather than all.
+    /// Whether it covers a stratified subset of the receivers, `pixels_measured` of them, rather than all.
     pub subset: bool,
 }
 

@@ -47,7 +47,7 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
     let mut line = format!("reference: {}, {} shadow rays", reference.kind, grouped(reference.rays));
     _ = write!(line, ", {} CPU s{}", short(reference.cpu_s), if reference.cached { " (cached)" } else { "" });
     if reference.subset {
-        _ = write!(line, ", on the fixed subset of {} receivers", grouped(scene.pixels_measured));
+        _ = write!(line, ", at {} of the receivers", grouped(scene.pixels_measured));
     }
     if reference.rel_mse > 0.0 {
         _ = write!(line, "; its own relMSE {}", short(reference.rel_mse));
