@@ -51,8 +51,11 @@ fn studies_are_named_listed_and_run() {
         command
     };
     let printed = contains("growth with the number of lights").and(contains("power"));
-    study().assert().success().stdout(printed).stderr(contains("rows go to"));
-    study().assert().code(2).stderr(contains("never overwritten"));
+    study().assert().success().stdout(printed.clone()).stderr(contains("rows go to"));
+    let written = std::fs::read(out.join("study.json")).expect("a record");
+    study().assert().success().stdout(printed);
+    assert!(written == std::fs::read(out.join("study.json")).expect("a record"), "it was measured again");
+    study().args(["--seed", "2"]).assert().code(2).stderr(contains("never overwritten"));
     let page = folder.path().join("README.md");
     let report = |check: &[&str]| {
         let mut command = citylights();
@@ -179,9 +182,62 @@ fn a_comparison_leaves_rows_tables_and_plots_that_reports_agree_with() {
     }
     assert!(!out.join("films").exists());
     citylights().arg("report").arg(&out).arg("--check").assert().success();
-    compare().assert().code(2).stderr(contains("never overwritten"));
+    let again = contains("nothing was measured").and(contains("never overwritten"));
+    compare().assert().success().stdout(contains("influence-tail")).stderr(again);
+    compare().args(["--seed", "2"]).assert().code(2).stderr(contains("never overwritten"));
     std::fs::write(out.join("lamp.md"), "edited").expect("written");
     citylights().arg("report").arg(&out).arg("--check").assert().code(1).stdout(contains("lamp.md"));
+}
+
+#[test]
+fn a_folder_that_is_somebodys_own_is_refused_before_anything_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let own = |name: &str| folder.path().join("own").join(name);
+    std::fs::create_dir_all(own("films")).expect("made");
+    std::fs::write(own("films/holiday.mkv"), "mine").expect("written");
+    std::fs::create_dir_all(own("offsets/peers")).expect("made");
+    for verb in ["compare scenes/megacity.toml", "study offsets", "study all"] {
+        let mut command = citylights();
+        command.args(verb.split(' ')).arg("--out").arg(own(""));
+        command.assert().code(2).stdout("").stderr(contains("nothing was touched").and(contains("own")));
+    }
+    assert_eq!(std::fs::read_to_string(own("films/holiday.mkv")).expect("read"), "mine");
+    assert_eq!(std::fs::read_dir(own("")).expect("listed").count(), 2, "something was written");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_not_utf8_are_taken() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join(std::ffi::OsStr::from_bytes(b"lamp\xff.toml"));
+    std::fs::write(&file, LAMP).expect("written");
+    for verb in [
+        "compare --budget 1 --repeats 2 -s uniform",
+        "study strategies --pixels 4 --receivers 4 --repeats 2 -s uniform --scene",
+    ] {
+        let mut command = citylights();
+        command.args(verb.split(' ')).arg(&file).arg("--out").arg(folder.path().join(&verb[..5])).arg("--cache");
+        command.arg(folder.path().join("cache")).assert().success();
+    }
+    let record = std::fs::read_to_string(folder.path().join("compa/run.json")).expect("a record");
+    assert!(record.contains("lamp\u{fffd}.toml"), "{record}");
+}
+
+#[test]
+fn a_record_names_the_build_wherever_it_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let mut command = citylights();
+    // A checkout of something else, and nothing to be found.
+    std::fs::create_dir(folder.path().join(".git")).expect("made");
+    command.current_dir(folder.path()).env("PATH", "").arg("compare").arg(&file);
+    command.args(["--budget", "1", "--repeats", "2", "-s", "uniform", "--out", "out"]).assert().success();
+    let record = citylights::record::store::read_run(&folder.path().join("out")).expect("a record");
+    assert_eq!(record.version, env!("CARGO_PKG_VERSION"));
+    assert_eq!(record.revision, citylights::measure::environment::revision());
+    assert!(record.compiler.starts_with("rustc 1."), "{}", record.compiler);
+    assert!(record.flags.contains("target features"), "{}", record.flags);
 }
 
 #[test]

@@ -365,6 +365,7 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     use citylights::measure::compare::{Compared, Options, compare};
+    use citylights::measure::films::Films;
     use citylights::measure::observer::Unobserved;
     use citylights::measure::plan::Budget;
     use citylights::record::store::RowWriter;
@@ -373,7 +374,8 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let strategies = ["right", "descent"].map(mutant);
     let budget = Budget { usual_passes: 4, most_passes: 4, seconds: 1.0 };
     let (cache, folder) = (folder.path().join("cache"), folder.path());
-    let options = Options { strategies: &strategies, budget, repeats: 3, seed: 1, threads: 1, cache: &cache, folder };
+    let films = &Films::of(folder, "mutants");
+    let options = Options { strategies: &strategies, budget, repeats: 3, seed: 1, threads: 1, cache: &cache, films };
     let mut rows = RowWriter::create(folder).expect("a file");
     let Compared { scene, rows, .. } =
         compare(&stage, "sixteen", &options, &[], &mut rows, &Unobserved).expect("a comparison");

@@ -7,6 +7,7 @@ mod common;
 mod runs;
 
 use citylights::measure::compare::{Compared, Options as Comparison, compare};
+use citylights::measure::films::Films;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::Claim;
@@ -73,7 +74,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
         seed: 1,
         threads: 2,
         cache: folder.path(),
-        folder: folder.path(),
+        films: &Films::of(folder.path(), "oracle"),
     };
     let mut writer = RowWriter::create(folder.path()).expect("begun");
     let Compared { scene: record, rows, .. } =

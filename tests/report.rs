@@ -3,7 +3,7 @@
 
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Machine, ReferenceRecord, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+    Claim, Counts, Interval, Kind, Machine, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA, SceneRecord, Summary,
 };
 use citylights::report::{self, Drift, splice};
 use std::fs;
@@ -191,6 +191,7 @@ fn record() -> (RunRecord, Vec<Row>) {
         command: "citylights compare scenes/village.toml --repeats 4".to_owned(),
         plan: "scenes; strategies; budget".to_owned(),
         date: "2026-11-22".to_owned(),
+        version: "0.1.0".to_owned(),
         revision: "67eec73".to_owned(),
         seed: 1,
         repeats: RUNS,
@@ -468,6 +469,81 @@ fn an_edited_page_or_row_is_drift() {
     fs::write(&rows_file, rows.replacen(",0.019,", ",0.9,", 1)).expect("written");
     let drifts = report::check(folder.path()).expect("checked");
     assert!(matches!(&drifts[..], [Drift::Differs { file, .. }] if file.ends_with("village.svg")), "{drifts:?}");
+}
+
+/// What a check says of rows, changed by `change`.
+fn faults(change: impl FnOnce(&mut RunRecord, &mut Vec<Row>)) -> Vec<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut run, mut rows) = record();
+    change(&mut run, &mut rows);
+    store::write_run(folder.path(), &run).expect("written");
+    let mut writer = RowWriter::create(folder.path()).expect("begun");
+    rows.iter().for_each(|row| writer.write(row).expect("written"));
+    report::report(folder.path()).expect("written");
+    let drifts = report::check(folder.path()).expect("checked");
+    drifts.iter().map(|drift| drift.to_string().rsplit_once("runs.csv: ").expect("a row").1.to_owned()).collect()
+}
+
+#[test]
+fn doubled_missing_and_unnamed_rows_are_found_and_named() {
+    assert!(faults(|_, _| ()).is_empty());
+    let power = |row: &Row| row.strategy == "power" && row.passes == 64;
+    assert_eq!(
+        faults(|_, rows| rows.extend(rows.iter().find(|row| power(row)).cloned())),
+        ["village, `power`, run 0, 64 passes: stands 2 times"]
+    );
+    assert_eq!(
+        faults(|_, rows| rows.retain(|row| !power(row) || row.run == 1)),
+        ["village, `power`, 64 passes: run 0 is missing", "village, `power`, 64 passes: runs 2 to 3 are missing",]
+    );
+    assert_eq!(
+        faults(|_, rows| rows.retain(|row| !row.strategy.starts_with("power") || row.passes < 256)),
+        ["village, `power`, 256 passes: runs 0 to 3 are missing"]
+    );
+    let more = |rows: &mut Vec<Row>| {
+        let row = rows.iter().find(|row| power(row)).cloned().expect("a row");
+        rows.extend([Row { run: 9, ..row.clone() }, Row { strategy: "nobody".into(), ..row }]);
+    };
+    assert_eq!(
+        faults(|_, rows| more(rows)),
+        ["village, `power`, 64 passes: run 9 where there are 4", "village, `nobody`: the record names none"]
+    );
+    // While scenes are still to come, their rows are in no summary.
+    assert_eq!(
+        faults(|run, rows| {
+            run.finished = false;
+            run.scenes.clear();
+            more(rows);
+        }),
+        [""; 0]
+    );
+}
+
+#[test]
+fn a_record_of_absurdly_many_runs_is_checked_in_no_time() {
+    let begun = std::time::Instant::now();
+    let found = faults(|run, _| {
+        run.scenes[0].summaries.iter_mut().filter(|s| s.strategy == "power").for_each(|s| s.runs = u32::MAX);
+    });
+    assert_eq!(found.len(), 9, "one for each budget");
+    assert!(found[0].ends_with("1 passes: runs 4 to 4294967294 are missing"), "{found:?}");
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
+#[test]
+fn a_folder_in_use_is_read_but_not_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let held = ResultFolder::open(folder.path(), Kind::Comparison).expect("marked");
+    stored(folder.path());
+    assert_eq!(report::check(folder.path()).expect("read").len(), 2);
+    let error = report::report(folder.path()).expect_err("refused").to_string();
+    assert!(error.contains("in use by another process"), "{error}");
+    drop(held);
+    report::report(folder.path()).expect("written");
+    let own = tempfile::tempdir().expect("a folder");
+    fs::write(own.path().join("village.md"), "mine").expect("written");
+    report::report(own.path()).expect_err("no record");
+    assert_eq!(fs::read_to_string(own.path().join("village.md")).expect("read"), "mine");
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! Raw results keep every number, and a run that dies keeps its rows.
 #![cfg(feature = "measure")]
 
+use citylights::record::folder::MARK;
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Machine, ReferenceRecord, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+    Claim, Counts, Interval, Kind, Machine, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA, SceneRecord, Summary,
 };
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn row(run: u32) -> Row {
     Row {
@@ -35,6 +36,7 @@ fn record() -> RunRecord {
         plan: "scenes; strategies; budget".into(),
         command: "citylights compare scenes/village.toml".to_owned(),
         date: "2026-11-22".to_owned(),
+        version: "0.1.0".to_owned(),
         revision: "67eec73".to_owned(),
         seed: 1,
         repeats: 16,
@@ -162,7 +164,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
         fs::write(&path, &whole[..cut]).expect("written");
         let rows = store::read_rows(folder.path()).expect("read");
         assert!(rows.cut_short && rows.rows == [row(0), row(1)], "cut at {cut}");
-        let (mut writer, finished) = RowWriter::resume(folder.path(), |_| true).expect("resumed");
+        let (mut writer, finished) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
         assert_eq!(finished, [row(0), row(1)]);
         writer.write(&row(2)).expect("written");
         assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -170,7 +172,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
     // Even the header can be cut short.
     fs::write(&path, &whole[..9]).expect("written");
     assert!(store::read_rows(folder.path()).expect("read").cut_short);
-    let (mut writer, finished) = RowWriter::resume(folder.path(), |_| true).expect("resumed");
+    let (mut writer, finished) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
     assert!(finished.is_empty());
     (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
     assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -217,14 +219,123 @@ fn records_of_another_schema_or_cut_short_are_refused() {
 }
 
 #[test]
-fn a_result_folder_is_never_overwritten() {
+fn of_rows_that_stand_twice_the_last_is_gone_on_with() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (mut writer, none) = RowWriter::resume(folder.path(), |rows| rows).expect("begun");
+    assert!(none.is_empty());
+    let other = Row { cpu_s: 7.0, ..row(0) };
+    [row(0), row(1), other.clone()].iter().for_each(|row| writer.write(row).expect("written"));
+    let (_, rows) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
+    assert_eq!(rows, [row(1), other]);
+    assert_eq!(store::read_rows(folder.path()).expect("read").rows, rows);
+}
+
+#[test]
+fn new_result_folders_stand_beside_those_that_are_there() {
     let results = tempfile::tempdir().expect("a folder");
     let results = results.path().join("deep/results");
-    let make = || store::create_folder(&results, "2026-11-22", "old town/1", "67eec73abcdef").expect("made");
+    let make = || {
+        let folder = ResultFolder::create(&results, "2026-11-22", "old town/1", "67eec73abcdef", Kind::Comparison);
+        folder.expect("made").path().to_owned()
+    };
     let names: Vec<_> = (0..3).map(|_| make().file_name().expect("a name").to_string_lossy().into_owned()).collect();
     let first = "2026-11-22-old-town-1-67eec73";
     assert_eq!(names, [first.to_owned(), format!("{first}-2"), format!("{first}-3")]);
     let folder = results.join(first);
     RowWriter::create(&folder).expect("begun");
     assert!(RowWriter::create(&folder).is_err(), "rows that are there stay");
+}
+
+/// Every file below a folder and what is in it.
+fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let entries = fs::read_dir(folder).expect("listed").map(|entry| entry.expect("an entry").path());
+    let mut found: Vec<_> = entries
+        .flat_map(|path| if path.is_dir() { files(&path) } else { vec![(path.clone(), fs::read(path).expect("read"))] })
+        .collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn a_folder_that_is_somebodys_own_is_refused_and_stays_as_it_is() {
+    let home = tempfile::tempdir().expect("a folder");
+    for name in ["films/holiday.mkv", ".hidden", store::RUN_FILE, ".citylights"] {
+        let folder = home.path().join("own");
+        let file = folder.join(name);
+        fs::create_dir_all(file.parent().expect("a folder")).expect("made");
+        fs::write(&file, "mine").expect("written");
+        fs::write(folder.join("notes.txt"), "mine").expect("written");
+        let before = files(&folder);
+        for refused in [
+            ResultFolder::check(&folder, Kind::Comparison),
+            ResultFolder::open(&folder, Kind::Comparison).map(drop),
+            ResultFolder::open(&folder, Kind::Study).map(drop),
+        ] {
+            let error = refused.expect_err("refused").to_string();
+            assert!(error.contains("nothing was touched") && error.contains("own"), "{name}: {error}");
+        }
+        assert_eq!(files(&folder), before, "{name}");
+        fs::remove_dir_all(folder).expect("removed");
+    }
+}
+
+#[test]
+fn a_marked_folder_has_one_writer_and_one_kind() {
+    let home = tempfile::tempdir().expect("a folder");
+    let path = home.path().join("out");
+    ResultFolder::check(&path, Kind::Study).expect("nothing is there");
+    assert!(!path.exists(), "asking makes nothing");
+    let held = ResultFolder::open(&path, Kind::Study).expect("made");
+    fs::write(path.join("study.json"), "{}").expect("written");
+    for refused in [
+        ResultFolder::check(&path, Kind::Study),
+        ResultFolder::open(&path, Kind::Study).map(drop),
+        ResultFolder::hold(&path).map(drop),
+    ] {
+        let error = refused.expect_err("refused").to_string();
+        assert!(error.contains("in use by another process"), "{error}");
+    }
+    drop(held);
+    ResultFolder::check(&path, Kind::Study).expect("free");
+    let error = ResultFolder::open(&path, Kind::Comparison).expect_err("refused").to_string();
+    assert!(error.contains("marked as a study"), "{error}");
+    assert!(ResultFolder::hold(&path).expect("free").is_some());
+    assert!(ResultFolder::hold(home.path()).expect("not marked").is_none());
+}
+
+#[test]
+fn a_folder_whose_maker_died_at_any_time_is_opened_again() {
+    let home = tempfile::tempdir().expect("a folder");
+    let path = home.path().join("out");
+    for half_made in [None, Some(""), Some("{\"sch")] {
+        fs::create_dir_all(&path).expect("made");
+        half_made.map_or(Ok(()), |text| fs::write(path.join(MARK), text)).expect("written");
+        let folder = ResultFolder::open(&path, Kind::Scratch).expect("opened");
+        fs::write(path.join(".run.json.123.part"), "half").expect("written");
+        fs::create_dir(path.join("deep")).expect("made");
+        fs::write(path.join("deep/file"), "whole").expect("written");
+        drop(folder);
+        let folder = ResultFolder::open(&path, Kind::Scratch).expect("opened again");
+        assert!(!path.join(".run.json.123.part").exists(), "half a file stays");
+        folder.remove().expect("removed");
+        assert!(!path.exists());
+    }
+}
+
+#[test]
+fn a_comparison_is_gone_on_with_by_its_like_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = RunRecord { finished: false, ..record() };
+    assert_eq!(store::begun(folder.path(), &run).expect("nothing there"), None);
+    store::write_run(folder.path(), &run).expect("written");
+    let again = RunRecord { command: "the same, typed another way".into(), date: "2027-01-01".into(), ..run.clone() };
+    assert!(store::begun(folder.path(), &again).expect("the same").is_some());
+    let other = |what: &str, run: RunRecord| {
+        let error = store::begun(folder.path(), &run).expect_err("refused").to_string();
+        assert!(error.contains("another comparison") && error.contains(what), "{error}");
+    };
+    other("other scenes or options", RunRecord { plan: "another".into(), ..run.clone() });
+    other("other revision", RunRecord { revision: "another".into(), ..run.clone() });
+    other("other compiler, build flags", RunRecord { compiler: "a".into(), flags: "b".into(), ..run.clone() });
+    other("other machine", RunRecord { machine: Machine { cores: 64, ..run.machine.clone() }, ..run });
 }

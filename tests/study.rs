@@ -4,14 +4,15 @@
 mod common;
 
 use citylights::base::colour::luminance;
+use citylights::base::error::{Error, Result};
 use citylights::base::random::RunKey;
 use citylights::base::statistics::Moments;
 use citylights::measure::observer::{Observer, Unobserved};
-use citylights::record::Machine;
 use citylights::record::study::{
     AxisRecord, Cell, ColumnRecord, Format, PlotRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord,
 };
 use citylights::record::study_store::{STUDY_FILE, StudyWriter, read_study};
+use citylights::record::{Kind, Machine, ResultFolder};
 use citylights::report::{self, Drift};
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
@@ -25,7 +26,7 @@ use citylights::visibility::stage::LeaveOut;
 use common::{ground, point, receiver, sampler, spot, stage_with};
 use glam::Vec3;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn number(name: &str, format: Format) -> ColumnRecord {
     ColumnRecord { name: name.to_owned(), head: name.replace('_', "\n"), format }
@@ -54,7 +55,9 @@ fn record() -> StudyRecord {
         study: "growth".into(),
         question: "What grows?".into(),
         command: "citylights study growth".into(),
+        plan: "scenes street=9f86d081; seed 1".into(),
         date: "2026-11-25".into(),
+        version: "0.1.0".into(),
         revision: "67eec73".into(),
         seed: 1,
         machine: Machine { cpu: "a processor".into(), cores: 2, os: "an OS".into() },
@@ -100,10 +103,22 @@ fn rows() -> Vec<Vec<Cell>> {
 }
 
 fn made(folder: &Path) -> Study {
-    let mut writer = StudyWriter::create(folder, record()).expect("begun");
-    rows().into_iter().for_each(|cells| writer.row("growth", cells).expect("written"));
-    writer.note("and a note from its end".into());
-    writer.finish(1.5).expect("finished")
+    let mut writer = begun(folder, record()).expect("begun");
+    put(&mut writer, &rows());
+    writer.note("and a note from its end".into()).expect("written");
+    writer.finish(1.5, |_, _| Ok(())).expect("finished")
+}
+
+fn begun(folder: &Path, record: StudyRecord) -> Result<StudyWriter> {
+    StudyWriter::open(ResultFolder::open(folder, Kind::Study)?, record)
+}
+
+/// Puts each row where rows of its lights and strategy stand.
+fn put(writer: &mut StudyWriter, rows: &[Vec<Cell>]) {
+    for cells in rows {
+        let key = [("lights", cells[0].clone()), ("strategy", cells[1].clone())];
+        writer.put("growth", &key, vec![cells.clone()]).expect("written");
+    }
 }
 
 #[test]
@@ -129,17 +144,46 @@ fn a_study_comes_back_as_it_was_made() {
     let folder = tempfile::tempdir().expect("a folder");
     let study = made(folder.path());
     assert_eq!(read_study(folder.path()).expect("read"), study);
-    let again = StudyWriter::create(folder.path(), record()).err().expect("refused").to_string();
-    assert!(again.contains("never overwritten"), "{again}");
+    let files = |name: &str| fs::read(folder.path().join(name)).expect("read");
+    let before = [files(STUDY_FILE), files("growth.csv")];
+    // Again, all of it is there.
+    let mut writer = begun(folder.path(), record()).expect("the same");
+    assert!(writer.has("growth", &[], 4) && writer.has("growth", &[("lights", 100.into())], 2));
+    writer.note("as of today".into()).expect("there");
+    assert_eq!(writer.finish(9.0, |_, _| Ok(())).expect("finished"), study);
+    assert_eq!([files(STUDY_FILE), files("growth.csv")], before, "results are never overwritten");
+    let other = |what: &str, record: StudyRecord| {
+        let error = begun(folder.path(), record).err().expect("refused").to_string();
+        assert!(error.contains(what), "{error}");
+    };
+    other("other scenes or options", StudyRecord { plan: "seed 2".into(), ..record() });
+    other("other revision", StudyRecord { revision: "67eec73+".into(), ..record() });
+    other("holds the study growth", StudyRecord { study: "decay".into(), ..record() });
+    other("other tables", StudyRecord { tables: Vec::new(), ..record() });
+}
+
+#[test]
+fn rows_that_were_measured_together_are_replaced_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut writer = begun(folder.path(), record()).expect("begun");
+    let all = rows();
+    put(&mut writer, &[all[0].clone(), all[2].clone(), all[3].clone()]);
+    let hundred = [("lights", 100.into())];
+    assert!(!writer.has("growth", &hundred, 2) && writer.has("growth", &[("lights", 1_000.into())], 2));
+    writer.put("growth", &hundred, all[..2].to_vec()).expect("written");
+    assert!(writer.has("growth", &hundred, 2));
+    assert_eq!(writer.table("growth").1, all);
+    let lost =
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| writer.put("growth", &hundred, all[2..].to_vec())));
+    assert!(lost.is_err(), "rows of another key would be lost");
 }
 
 #[test]
 fn an_interrupted_study_keeps_its_rows_and_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut writer = StudyWriter::create(folder.path(), record()).expect("begun");
+    let mut writer = begun(folder.path(), record()).expect("begun");
     let [first, second, ..] = &rows()[..] else { panic!("four rows") };
-    writer.row("growth", first.clone()).expect("written");
-    writer.row("growth", second.clone()).expect("written");
+    put(&mut writer, &[first.clone(), second.clone()]);
     drop(writer);
     let file = folder.path().join("growth.csv");
     let text = fs::read_to_string(&file).expect("read");
@@ -147,6 +191,18 @@ fn an_interrupted_study_keeps_its_rows_and_says_so() {
     let study = read_study(folder.path()).expect("read");
     assert_eq!(study.rows, [[first.clone()]], "the line that was cut short is left out");
     assert!(report::study_text(&study).contains("warning: not finished: some rows are missing"));
+    // Gone on with, it is what it would have been.
+    let mut writer = begun(folder.path(), record()).expect("resumed");
+    assert!(writer.has("growth", &[], 1));
+    put(&mut writer, &rows()[1..]);
+    drop(writer);
+    fs::remove_file(&file).expect("removed");
+    assert!(read_study(folder.path()).expect("read").rows[0].is_empty(), "a table that was not yet begun");
+    let mut writer = begun(folder.path(), record()).expect("resumed");
+    put(&mut writer, &rows());
+    writer.note("and a note from its end".into()).expect("written");
+    let study = writer.finish(1.5, |_, _| Ok(())).expect("finished");
+    assert_eq!(study, made(tempfile::tempdir().expect("a folder").path()));
 }
 
 #[test]
@@ -226,10 +282,7 @@ fn options(folder: &Path, strategies: &str) -> Options {
 /// Runs a study, checks that its derived files follow from its cells, and that a changed cell is noticed.
 fn ran(name: &str, options: &Options, folder: &Path) -> Study {
     let out = folder.join(name);
-    let make = || {
-        fs::create_dir(&out).expect("made once");
-        Ok::<PathBuf, _>(out.clone())
-    };
+    let make = || ResultFolder::open(&out, Kind::Study);
     let study = study::find(name).expect("known").run(options, format!("citylights study {name}"), &make, &Unobserved);
     let study = study.expect("finished");
     report::report(&out).expect("written");
@@ -424,9 +477,9 @@ fn a_study_stops_when_asked_to_and_keeps_its_folder() {
     let options = options(folder.path(), "power");
     for entry in study::STUDIES {
         let out = folder.path().join(entry.name);
-        fs::create_dir(&out).expect("made");
-        let error = entry.run(&options, String::new(), &|| Ok(out.clone()), &Stopped).expect_err("stopped");
-        assert!(matches!(error, citylights::base::error::Error::Interrupted), "{error}");
+        let make = || ResultFolder::open(&out, Kind::Study);
+        let error = entry.run(&options, String::new(), &make, &Stopped).expect_err("stopped");
+        assert!(matches!(error, Error::Interrupted), "{error}");
         assert!(!read_study(&out).expect("a readable study").record.finished);
     }
 }

@@ -4,6 +4,7 @@ import argparse
 import json
 import os
 import sys
+import time
 
 
 def begin():
@@ -29,32 +30,24 @@ def command_line(description):
     return parser
 
 
-def run(say, arguments, setup_s, render):
-    """Renders every seed at every sample count and tells of each image.
+def run(say, arguments, begun, render):
+    """Renders every seed at every sample count, each image in one block, and tells of each.
 
-    `render(count, seed, path)` renders, writes `path` and gives the CPU and the wall seconds of rendering. Part of those
-    is paid whatever the count; so an image's time is its count times the slope between the least and the largest one.
-    `setup_s` is the CPU time up to and with a first rendering at one sample.
+    `render(count, seed, path)` renders, writes `path` and gives the CPU and the wall seconds of rendering: all that is
+    paid for that image once the scene is ready. `begun` is the CPU time of the process before it loaded the scene. The
+    set-up is what a first image takes beyond the same image made again: loading, building, compiling.
     """
-    counts = arguments.spp
+    first = os.path.join(arguments.out, "first.exr")
+    render(1, 0, first)
+    ready = time.process_time()
+    render(1, 0, first)
+    again = time.process_time() - ready
+    setup_s = max(ready - begun - again, 0.0)
     for seed in arguments.seeds:
-        files = {count: f"{seed}-{count}.exr" for count in counts}
-        spent = {count: render(count, seed, os.path.join(arguments.out, files[count])) for count in counts}
-        low, high = counts[0], counts[-1]
-        if low == high:
-            high = 4 * low
-            spent[high] = render(high, seed, os.path.join(arguments.out, "more.exr"))
-        cpu, wall = ((spent[high][i] - spent[low][i]) / (high - low) for i in (0, 1))
-        if cpu <= 0:
-            # Too few samples for a slope: all of the largest count's time is a bound from above.
-            cpu, wall = (spent[high][i] / high for i in (0, 1))
-        for count in counts:
-            say(
-                kind="image",
-                seed=seed,
-                spp=count,
-                setup_s=max(setup_s - cpu, 0.0),
-                cpu_s=count * cpu,
-                wall_s=max(count * wall, 0.0),
-                file=files[count],
-            )
+        files = {count: f"{seed}-{count}.exr" for count in arguments.spp}
+        # The largest first: it shows best which thread computes.
+        largest_first = reversed(arguments.spp)
+        spent = {count: render(count, seed, os.path.join(arguments.out, files[count])) for count in largest_first}
+        for count in arguments.spp:
+            cpu, wall = spent[count]
+            say(kind="image", seed=seed, spp=count, setup_s=setup_s, cpu_s=cpu, wall_s=wall, file=files[count])

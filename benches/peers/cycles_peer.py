@@ -153,9 +153,14 @@ def threads():
 
 
 def busiest(before, after):
-    """CPU seconds of the thread that computed; another one only waits for it, and spins in the system meanwhile."""
-    spent = [(after[t][0] - before.get(t, (0, 0))[0], after[t][1] - before.get(t, (0, 0))[1]) for t in after]
-    return max(spent)[1] if spent else None
+    """CPU seconds, from one to the other, of the thread that has computed most so far.
+
+    The others wait for it: one of them spins meanwhile, more or less as the machine is busy.
+    """
+    if not after:
+        return None
+    thread = max(after, key=lambda thread: after[thread][0])
+    return after[thread][1] - before.get(thread, (0, 0))[1]
 
 
 def main():
@@ -169,8 +174,9 @@ def main():
         remarks=[
             f"light tree {arguments.light_tree}; a sample is a camera ray, a light sample with its shadow ray, and a ray "
             "by the surface's own distribution, the two weighted against each other; tabulated Sobol numbers",
-            f"{clock}, as the slope between the least and the largest sample count; its set-up is import and "
-            "synchronisation up to the first sample, without the start of Python",
+            f"{clock}, each image rendered in one block; what its main thread does to begin an image and to write it is not "
+            "in them. Set-up is import and synchronisation, what a first image takes in the whole process beyond the same "
+            "image made again, without the start of Python",
         ],
     )
     if not arguments.seeds:
@@ -186,8 +192,7 @@ def main():
         cpu = busiest(before, threads())
         return wall if cpu is None else cpu, wall
 
-    render(1, 0, os.path.join(arguments.out, "first.exr"))
-    run(say, arguments, time.process_time() - begun, render)
+    run(say, arguments, begun, render)
 
 
 main()

@@ -75,8 +75,9 @@ def main():
         remarks=[
             "one light sample and one shadow ray a sample, lights chosen uniformly by shape: all triangles of one "
             "radiance are one shape; independent random numbers",
-            "CPU s are those of the process, one thread, as the slope between the least and the largest sample count; its "
-            f"set-up is loading, building and compiling up to the first sample, without the start of Python{slow}",
+            "CPU s are those of the process, one thread, each image rendered in one block, which begins with tracing its "
+            "program in Python. Set-up is loading, building and compiling, unless Dr.Jit has the program in its cache on disk: "
+            f"what a first image takes beyond the same image made again, without the start of Python{slow}",
         ],
     )
     if not arguments.seeds:
@@ -108,8 +109,7 @@ def main():
         dr.set_thread_count(1)
         return cpu, wall
 
-    render(1, 0, os.path.join(arguments.out, "first.exr"))
-    run(say, arguments, time.process_time() - begun, render)
+    run(say, arguments, begun, render)
 
 
 main()

@@ -1,5 +1,5 @@
 //! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
-//! statistics, relative error, colour, files, errors.
+//! statistics, intervals and rankings, relative error, colour, files, errors.
 
 pub mod colour;
 pub mod discrete;
@@ -7,8 +7,12 @@ pub mod double;
 pub mod draws;
 pub mod error;
 pub mod file;
+#[cfg(feature = "measure")]
+pub mod interval;
 pub mod names;
 pub mod random;
+#[cfg(feature = "measure")]
+pub mod ranking;
 pub mod rel_mse;
 pub mod statistics;
 pub mod triangle;

@@ -10,11 +10,11 @@ use crate::measure::engine::Engine;
 use crate::measure::environment;
 use crate::measure::films::Films;
 use crate::measure::plan::Budget;
-use crate::measure::reference::scene_hash;
+use crate::measure::reference::{WORK_S, scene_hash};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
-use crate::record::store::{RUN_FILE, RowWriter, create_folder, file_name, read_run, write_run};
-use crate::record::{Machine, Row, RunRecord, SCHEMA};
+use crate::record::store::{self, RowWriter, file_name, write_run};
+use crate::record::{Kind, Machine, ResultFolder, Row, RunRecord, SCHEMA};
 use crate::report;
 use crate::report::table;
 use crate::scene::Scene;
@@ -42,6 +42,10 @@ pub(super) struct Arguments {
     /// Most counted work of a strategy in a run, in seconds at the committed rates: the same on every machine
     #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     seconds: f64,
+    /// Most counted work of the reference, in CPU seconds at the committed rates: where a scene asks for more, errors are
+    /// taken at fewer receivers
+    #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
+    reference_work: f64,
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
@@ -76,6 +80,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let every = STRATEGIES.iter().map(|entry| entry.info().name).collect::<Vec<_>>().join(",");
     let strategies = parse_list(arguments.strategies.as_deref().unwrap_or(&every))?;
     let peers = peers(&arguments.peers)?;
+    // A folder that cannot be used must not cost the reading of scenes.
+    arguments.out.as_deref().map_or(Ok(()), |out| ResultFolder::check(out, Kind::Comparison))?;
     let progress = Progress::new()?;
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
@@ -96,14 +102,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
                 environment::cores()
             ));
         }
-        let mut session = Session::open(arguments, record, &scenes)?;
+        let Some(mut session) = Session::open(arguments, record, &scenes)? else { return Ok(Outcome::Done) };
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
             session.scene(&stage, file, &asked, &progress)?;
         }
         session.finish()?;
-        say(&format!("rows, tables and plots: {}", session.folder.display()));
+        say(&format!("rows, tables and plots: {}", session.folder.path().display()));
         Ok(session.outcome())
     })
 }
@@ -118,47 +124,39 @@ struct Asked<'a> {
 
 /// A result folder being filled.
 struct Session {
-    folder: PathBuf,
+    folder: ResultFolder,
     record: RunRecord,
     rows: RowWriter,
+    films: Films,
     /// Rows of an interrupted comparison that is being resumed.
     before: Vec<Row>,
 }
 
 impl Session {
-    fn open(arguments: &Arguments, record: RunRecord, scenes: &[Scene]) -> Result<Self> {
+    /// Begins the comparison that `record` describes, or goes on with it where it was begun; one that has been finished
+    /// is shown, and there is nothing to do.
+    fn open(arguments: &Arguments, mut record: RunRecord, scenes: &[Scene]) -> anyhow::Result<Option<Self>> {
         std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
-        if let Some(folder) = arguments.out.as_deref().filter(|folder| folder.join(RUN_FILE).exists()) {
-            let earlier = read_run(folder)?;
-            let (folder_name, begun) = (folder.display(), &earlier.command);
-            if earlier.finished {
-                let text = "holds a finished comparison; results are never overwritten: name another folder";
-                return Err(Error::Invalid(format!("{folder_name} {text}")));
-            }
-            if (&earlier.plan, &earlier.machine, &earlier.revision) != (&record.plan, &record.machine, &record.revision)
-            {
-                let text = "with the same recipes, options, machine and revision, or name another folder";
-                return Err(Error::Invalid(format!(
-                    "{folder_name} holds another comparison, begun as `{begun}`; resume that, {text}"
-                )));
-            }
-            let films = Films::of(folder);
-            let (rows, before) = RowWriter::resume(folder, |row| films.has(&row.scene, &row.strategy, row.run))?;
-            return Ok(Self { folder: folder.to_owned(), record, rows, before });
-        }
         let folder = match &arguments.out {
-            Some(folder) => {
-                std::fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
-                folder.clone()
-            }
+            Some(folder) => ResultFolder::open(folder, Kind::Comparison)?,
             None => {
-                let names: Vec<&str> = scenes.iter().map(Scene::name).collect();
-                create_folder(Path::new("results"), &record.date, &names.join("+"), &record.revision)?
+                let names = scenes.iter().map(Scene::name).collect::<Vec<_>>().join("+");
+                let RunRecord { date, revision, .. } = &record;
+                ResultFolder::create(Path::new("results"), date, &names, revision, Kind::Comparison)?
             }
         };
-        let rows = RowWriter::create(&folder)?;
-        write_run(&folder, &record)?;
-        Ok(Self { folder, record, rows, before: Vec::new() })
+        let films = Films::of(folder.path(), &record.plan);
+        match store::begun(folder.path(), &record)? {
+            Some(earlier) if earlier.finished => {
+                // Left by one that was killed at its very end.
+                films.remove()?;
+                return again(folder.path(), &earlier).map(|()| None);
+            }
+            Some(earlier) => (record.date, record.command) = (earlier.date, earlier.command),
+            None => write_run(folder.path(), &record)?,
+        }
+        let (rows, before) = RowWriter::resume(folder.path())?;
+        Ok(Some(Self { folder, record, rows, films, before }))
     }
 
     fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
@@ -175,13 +173,14 @@ impl Session {
             repeats: arguments.repeats,
             seed: arguments.seed,
             engine: &engine,
+            reference_work_s: arguments.reference_work,
             cache: &arguments.cache,
-            folder: &self.folder,
+            films: &self.films,
         };
         let file = file.display().to_string();
         let resumable = |error: &Error| {
             if matches!(error, Error::Interrupted) {
-                let folder = self.folder.display();
+                let folder = self.folder.path().display();
                 say(&format!("finished rows are in {folder}; the same command with --out {folder} goes on from there"));
             }
         };
@@ -193,7 +192,8 @@ impl Session {
             spp: &sample_counts(arguments.budget.unwrap_or(64)),
             runs: arguments.repeats.min(PEER_RUNS),
             seed: arguments.seed,
-            folder: &self.folder,
+            folder: self.folder.path(),
+            films: &self.films,
             patience: Duration::from_secs_f64(arguments.peer_patience),
         };
         let others = peers::measure::measure(&target, &truth, &options, &self.before, &mut self.rows, progress);
@@ -207,7 +207,7 @@ impl Session {
         scene.summaries.extend(others.summaries);
         rows.extend(others.rows);
         self.record.scenes.push(scene);
-        write_run(&self.folder, &self.record)?;
+        write_run(self.folder.path(), &self.record)?;
         // This scene is finished, even where others are still to come.
         let record = RunRecord { finished: true, ..self.record.clone() };
         if let Some(scene) = record.scenes.last() {
@@ -230,27 +230,43 @@ impl Session {
         outcome
     }
 
+    /// Writes what follows from the rows, then that the comparison is finished: a kill in between is made good by the
+    /// same command.
     fn finish(&mut self) -> Result<()> {
         self.record.finished = true;
-        write_run(&self.folder, &self.record)?;
-        report::report(&self.folder)?;
-        Films::of(&self.folder).remove()
+        self.rows.sync()?;
+        let folder = self.folder.path();
+        report::write(folder, &report::derive(&self.record, &store::read_rows(folder)?.rows)?)?;
+        write_run(folder, &self.record)?;
+        self.films.remove()
     }
+}
+
+/// Shows a finished comparison.
+fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
+    let rows = store::read_rows(folder)?.rows;
+    record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows))))?;
+    let (folder, date) = (folder.display(), &record.date);
+    say(&format!(
+        "{folder} holds this comparison, finished ({date}); results are never overwritten: nothing was measured"
+    ));
+    Ok(())
 }
 
 fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
     let Asked { arguments, strategies, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
-    let scenes: Vec<String> = scenes.iter().map(scene_hash).collect();
+    let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name(), scene_hash(scene))).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}",
             scenes.join(" "),
             strategies.join(" "),
             peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
             arguments.budget,
             arguments.seconds,
             RATES,
+            arguments.reference_work,
             arguments.repeats,
             arguments.seed,
             arguments.scene_options.describe()
@@ -258,6 +274,7 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
         schema: SCHEMA,
         command: command(),
         date: environment::date(),
+        version: environment::version(),
         revision: environment::revision(),
         seed: arguments.seed,
         repeats: arguments.repeats,

@@ -91,7 +91,8 @@ pub fn run() -> ExitCode {
 
 /// What was typed, for records.
 fn command() -> String {
-    std::iter::once("citylights".to_owned()).chain(std::env::args().skip(1)).collect::<Vec<_>>().join(" ")
+    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    std::iter::once("citylights".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// Tells the user something on stderr; one that has been closed is no error.

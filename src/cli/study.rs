@@ -4,9 +4,9 @@ use super::compare::{CACHE, seconds};
 use super::progress::Progress;
 use super::scene::{pool, resolution, threads};
 use super::{Outcome, command, print, say};
-use crate::base::error::{Error, Result};
+use crate::base::error::Error;
 use crate::measure::environment;
-use crate::record::store::create_folder;
+use crate::record::{Kind, ResultFolder};
 use crate::report;
 use crate::scene::file::Overrides;
 use crate::study::{Entry, Options, STUDIES, find};
@@ -69,24 +69,45 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let all = arguments.name == "all";
     let studies = if all { STUDIES.to_vec() } else { vec![find(&arguments.name)?] };
+    // A folder that cannot be used must not cost the studies before it.
+    if let Some(out) = &arguments.out {
+        studies.iter().try_for_each(|study| ResultFolder::check(&folder(out, study, all), Kind::Study))?;
+    }
     let progress = Progress::new()?;
     let options = options(arguments);
     pool(Some(options.threads as u32))?.install(|| {
         for study in studies {
             progress.scene(study.name);
             let made = OnceCell::new();
-            let folder = || {
-                let folder = folder(arguments, &study, all)?;
-                say(&format!("study {}: rows go to {}", study.name, folder.display()));
-                Ok(made.get_or_init(|| folder).clone())
+            let open = || {
+                let folder = match &arguments.out {
+                    Some(out) => ResultFolder::open(&folder(out, &study, all), Kind::Study)?,
+                    None => {
+                        let name = format!("study-{}", study.name);
+                        let (date, revision) = (environment::date(), environment::revision());
+                        ResultFolder::create(Path::new("results"), &date, &name, &revision, Kind::Study)?
+                    }
+                };
+                let path = made.get_or_init(|| folder.path().to_owned()).display();
+                say(&format!("study {}: rows go to {path}", study.name));
+                Ok(folder)
             };
-            let finished = study.run(&options, command(), &folder, &progress)?;
+            let finished = study.run(&options, command(), &open, &progress).inspect_err(|error| {
+                if let (Error::Interrupted, Some(path)) = (error, made.get()) {
+                    let path = path.display();
+                    say(&format!("finished rows are in {path}; the same study with --out {path} goes on from there"));
+                }
+            })?;
             print(&format!("{}\n", report::study_text(&finished)))?;
-            made.get().map_or(Ok(Vec::new()), |folder| report::report(folder))?;
             say(&format!("study {}: {:.0} s", study.name, finished.record.wall_s));
         }
         Ok(Outcome::Done)
     })
+}
+
+/// The folder of a study where one is named; with `all` each has its own in there.
+fn folder(out: &Path, study: &Entry, all: bool) -> PathBuf {
+    if all { out.join(study.name) } else { out.to_owned() }
 }
 
 fn options(arguments: &Arguments) -> Options {
@@ -105,14 +126,4 @@ fn options(arguments: &Arguments) -> Options {
         threads: arguments.threads.unwrap_or_else(|| environment::cores().min(2)) as usize,
         cache: arguments.cache.clone(),
     }
-}
-
-fn folder(arguments: &Arguments, study: &Entry, all: bool) -> Result<PathBuf> {
-    let Some(out) = &arguments.out else {
-        let name = format!("study-{}", study.name);
-        return create_folder(Path::new("results"), &environment::date(), &name, &environment::revision());
-    };
-    let folder = if all { out.join(study.name) } else { out.clone() };
-    std::fs::create_dir_all(&folder).map_err(Error::io("create", &folder))?;
-    Ok(folder)
 }

@@ -20,7 +20,6 @@ use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, Summary}
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
 use crate::visibility::stage::Stage;
-use glam::Vec3;
 use std::path::Path;
 
 /// How a comparison is done.
@@ -35,10 +34,12 @@ pub struct Options<'a> {
     pub seed: u64,
     /// Who times the runs.
     pub engine: &'a Engine<'a>,
+    /// Most counted work of the reference, in nominal CPU seconds.
+    pub reference_work_s: f64,
     /// Folder of cached references.
     pub cache: &'a Path,
-    /// The result folder.
-    pub folder: &'a Path,
+    /// Where the last image of each finished run is kept.
+    pub films: &'a Films,
 }
 
 /// What a comparison found on one scene.
@@ -63,14 +64,15 @@ pub fn compare<'a>(
     rows: &mut RowWriter,
     watch: &dyn Observer,
 ) -> Result<Compared<'a>> {
-    let target = Target::whole(stage);
-    let pilots = pilots(&target, options, watch)?;
+    let frame = Target::whole(stage);
+    let pilots = pilots(&frame, options, watch)?;
     let ladder = |pilot: &Option<Trial>| {
         let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
         pilot.map_or_else(Vec::new, |pilot| pilot.ladder(options.budget, options.repeats))
     };
     let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
-    let reference = Reference::compute(&target, accuracy(options, &pilots, &ladders), options.cache, watch)?;
+    let accuracy = accuracy(options, &pilots, &ladders);
+    let (target, reference) = Reference::bounded(&frame, accuracy, options.reference_work_s, options.cache, watch)?;
 
     let strategies: Vec<&Configured> = options.strategies.iter().collect();
     let experiment = Experiment {
@@ -82,13 +84,8 @@ pub fn compare<'a>(
         runs: options.repeats,
         seed: options.seed,
     };
-    let mut folder = Folder {
-        scene: stage.scene().name(),
-        films: Films::of(options.folder),
-        before,
-        rows,
-        receivers: target.places.len(),
-    };
+    let mut folder =
+        Folder { scene: stage.scene().name(), films: options.films, before, rows, receivers: target.places.len() };
     let (runs, account) = experiment.run(&mut folder, watch)?;
 
     let mut summaries = Vec::new();
@@ -231,27 +228,28 @@ fn record(
 /// Rows and images of one scene in a result folder.
 struct Folder<'a> {
     scene: &'a str,
-    films: Films,
+    films: &'a Films,
     before: &'a [Row],
     rows: &'a mut RowWriter,
     receivers: usize,
 }
 
 impl Keep for Folder<'_> {
-    fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Option<Found> {
-        let is_it = |r: &&Row| (&*r.scene, &*r.strategy, r.run, r.passes) == (self.scene, strategy, run, passes);
-        let row = self.before.iter().find(is_it)?.clone();
-        if !with_image {
-            return Some((row, None));
+    fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Result<Option<Found>> {
+        let key = (self.scene, strategy, run, passes);
+        let Some(row) = self.before.iter().find(|row| row.key() == key) else { return Ok(None) };
+        let image = if with_image { self.films.load(row, self.receivers) } else { None };
+        if row.error.is_some() || (with_image && image.is_none()) {
+            self.rows.forget(|row| row.key() == key)?;
+            return Ok(None);
         }
-        let image: Vec<Vec3> = self.films.load(self.scene, strategy, run, self.receivers)?;
-        Some((row, Some(image)))
+        Ok(Some((row.clone(), image)))
     }
 
     fn keep(&mut self, (row, image): &Found) -> Result<()> {
         // The image first: a row whose image is missing would have to be measured again.
         if let Some(image) = image {
-            self.films.save(self.scene, &row.strategy, row.run, image)?;
+            self.films.save(row, image)?;
         }
         self.rows.write(row)
     }

@@ -4,6 +4,8 @@
 //! a straight line in the log-log plot; beyond the last, noise is taken to fall as 1 / time, down to the squared bias.
 
 use super::experiment::Runs;
+use super::figure::{self, Figure};
+use crate::base::interval::Tail;
 use crate::record::{Read, Row};
 
 /// The runs of each budget, smallest first: the same runs at each.
@@ -20,6 +22,9 @@ struct Point {
     error: f64,
 }
 
+/// How far an error is raised, as a share of it, to see what follows from it.
+const STEP: f64 = 1e-4;
+
 impl<'a> Curve<'a> {
     /// The curve of a strategy with these budgets.
     pub fn of(runs: &'a Runs, ladder: &[u32]) -> Self {
@@ -31,35 +36,53 @@ impl<'a> Curve<'a> {
         self.budgets.iter().map(Vec::len).min().unwrap_or(0)
     }
 
-    /// CPU seconds, set-up included, to a relMSE of `error`, and how they were found. `without` leaves out a run.
-    pub fn seconds_to(&self, error: f64, bias2: f64, without: Option<usize>) -> (Read, f64) {
-        let points = self.points(without);
-        let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
-        match points.iter().position(|point| point.error <= error) {
-            Some(0) => (Read::Measured, points[0].seconds),
-            Some(at) => (Read::Measured, seconds_between(points[at - 1], points[at], error)),
-            None if bias2.is_nan() => (Read::Unknown, f64::NAN),
-            None if error <= bias2 => (Read::Never, f64::INFINITY),
-            None => {
-                let sampling = last.seconds - last.setup_s;
-                (Read::Extrapolated, last.setup_s + sampling * (last.error - bias2) / (error - bias2))
+    /// CPU seconds, set-up included, to a relMSE of `error`. `bias2` gives the squared bias that counts, without a run.
+    pub fn seconds_to(&self, error: f64, bias2: impl Fn(Option<usize>) -> f64) -> (Read, Figure) {
+        self.read(bias2, |points, bias2| {
+            let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
+            match points.iter().position(|point| point.error <= error) {
+                Some(0) => (Read::Measured, points[0].seconds),
+                Some(at) => (Read::Measured, seconds_between(points[at - 1], points[at], error)),
+                None if bias2.is_nan() => (Read::Unknown, f64::NAN),
+                None if error <= bias2 => (Read::Never, f64::INFINITY),
+                None => {
+                    let sampling = last.seconds - last.setup_s;
+                    (Read::Extrapolated, last.setup_s + sampling * (last.error - bias2) / (error - bias2))
+                }
             }
-        }
+        })
     }
 
-    /// relMSE after so many CPU seconds, set-up included, and how it was found. `without` leaves out a run.
-    pub fn error_at(&self, seconds: f64, bias2: f64, without: Option<usize>) -> (Read, f64) {
-        let points = self.points(without);
-        let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
-        match points.iter().position(|point| point.seconds >= seconds) {
-            Some(0) => (if points[0].seconds > seconds { Read::TooSoon } else { Read::Measured }, points[0].error),
-            Some(at) => (Read::Measured, error_between(points[at - 1], points[at], seconds)),
-            None if bias2.is_nan() => (Read::Unknown, f64::NAN),
-            None => {
-                let share = (last.seconds - last.setup_s) / (seconds - last.setup_s);
-                (Read::Extrapolated, bias2 + (last.error - bias2) * share)
+    /// relMSE after so many CPU seconds, set-up included. `bias2` is as above.
+    pub fn error_at(&self, seconds: f64, bias2: impl Fn(Option<usize>) -> f64) -> (Read, Figure) {
+        self.read(bias2, |points, bias2| {
+            let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
+            match points.iter().position(|point| point.seconds >= seconds) {
+                Some(0) => (if points[0].seconds > seconds { Read::TooSoon } else { Read::Measured }, points[0].error),
+                Some(at) => (Read::Measured, error_between(points[at - 1], points[at], seconds)),
+                None if bias2.is_nan() => (Read::Unknown, f64::NAN),
+                None => {
+                    let share = (last.seconds - last.setup_s) / (seconds - last.setup_s);
+                    (Read::Extrapolated, bias2 + (last.error - bias2) * share)
+                }
             }
-        }
+        })
+    }
+
+    /// What `of` reads off the curve, with what each run says of it.
+    fn read(&self, bias2: impl Fn(Option<usize>) -> f64, of: impl Fn(&[Point], f64) -> (Read, f64)) -> (Read, Figure) {
+        let all = self.points(None);
+        let (how, estimate) = of(&all, bias2(None));
+        // The tail of each budget's error counts as far as the figure follows that error.
+        let tail = self.budgets.iter().enumerate().fold(Tail::NONE, |tail, (i, rows)| {
+            let mut raised = all.clone();
+            let step = STEP * raised[i].error;
+            raised[i].error += step;
+            let slope = (of(&raised, bias2(None)).1 - estimate) / step;
+            if slope.is_finite() && slope != 0.0 { tail.plus(figure::tail(rows).times(slope)) } else { tail }
+        });
+        let figure = Figure::jackknife(self.runs(), tail, |without| of(&self.points(without), bias2(without)).1);
+        (how, figure)
     }
 
     fn points(&self, without: Option<usize>) -> Vec<Point> {

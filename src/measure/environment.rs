@@ -1,6 +1,6 @@
 //! Where and by what was it measured?
-
-use std::process::Command;
+//!
+//! By what was fixed when this was built (`build.rs`): nothing is executed here.
 
 /// The processor's name, as far as the system tells.
 pub fn cpu() -> String {
@@ -27,34 +27,25 @@ pub fn date() -> String {
     jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
 }
 
-/// Revision of the source in the working folder, `unknown` outside a checkout; `+` marks uncommitted changes.
+/// The crate's version.
+pub fn version() -> String {
+    env!("CARGO_PKG_VERSION").into()
+}
+
+/// Revision of the source that this was built from, `unknown` outside its checkout; `+` marks uncommitted changes.
 pub fn revision() -> String {
-    let ask = |arguments: &[&str]| {
-        let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
-        Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-    };
-    let Some(revision) = ask(&["rev-parse", "--short=10", "HEAD"]) else { return "unknown".into() };
-    let changed = ask(&["status", "--porcelain", "--untracked-files=no"]).is_none_or(|status| !status.is_empty());
-    if changed { format!("{revision}+") } else { revision }
+    env!("CITYLIGHTS_REVISION").into()
 }
 
-/// The compiler that built this, where it can still be asked.
+/// The compiler that built this.
 pub fn compiler() -> String {
-    let output = Command::new("rustc").arg("--version").output().ok().filter(|output| output.status.success());
-    output.map_or_else(|| "rustc, version not known".into(), |o| String::from_utf8_lossy(&o.stdout).trim().to_owned())
+    env!("CITYLIGHTS_COMPILER").into()
 }
 
-/// What changes the code: the profile and the vector instructions compiled in.
+/// What changes the code: debug assertions, the level of optimisation, the target and its features.
 pub fn flags() -> String {
-    let profile = if cfg!(debug_assertions) { "debug assertions" } else { "release" };
-    let vectors = if cfg!(target_feature = "avx512f") {
-        "avx512"
-    } else if cfg!(target_feature = "avx2") {
-        "avx2"
-    } else {
-        "default target"
-    };
-    format!("{profile}, {vectors}")
+    let checks = if cfg!(debug_assertions) { "debug assertions" } else { "release" };
+    format!("{checks}, {}", env!("CITYLIGHTS_FLAGS"))
 }
 
 /// What makes figures doubtful here.

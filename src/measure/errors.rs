@@ -2,6 +2,7 @@
 
 use super::target::places;
 use crate::base::colour::luminance;
+use crate::base::interval::LARGEST;
 use crate::base::rel_mse::{Means, RelMse};
 use crate::record::Row;
 use glam::{DVec3, Vec3};
@@ -27,6 +28,9 @@ pub struct Errors {
     pub rel_mse_trimmed: f64,
     /// Share of `rel_mse` that those hold.
     pub trimmed_share: f64,
+    /// What the worst receivers add to `rel_mse`, the worst first: they say how far the mean over runs can be trusted
+    /// (see [`Tail`](crate::base::interval::Tail)).
+    pub largest: [f64; LARGEST],
     /// Mean luminance over the truth's; 1 where both are 0.
     pub energy_ratio: f64,
     /// relMSE by tenths of the truth's luminance, darkest first.
@@ -41,6 +45,7 @@ impl Errors {
             rel_mse: self.rel_mse,
             rel_mse_trimmed: self.rel_mse_trimmed,
             trimmed_share: self.trimmed_share,
+            largest: self.largest,
             energy_ratio: self.energy_ratio,
             deciles: self.deciles,
             ..row
@@ -146,6 +151,7 @@ impl Truth {
             rel_mse,
             rel_mse_trimmed,
             trimmed_share,
+            largest: largest(&relative).map(|error| error / n as f64),
             energy_ratio: if expected > 0.0 { energy / expected } else { 1.0 },
             deciles: std::array::from_fn(|d| {
                 let part = &self.by_luminance[d * n / 10..(d + 1) * n / 10];
@@ -153,6 +159,20 @@ impl Truth {
             }),
         }
     }
+}
+
+/// The largest of these numbers above 0, largest first; 0 where there are fewer.
+fn largest(values: &[f64]) -> [f64; LARGEST] {
+    let mut found = [0.0; LARGEST];
+    // Written so that a NaN is none of them.
+    for &value in values.iter().filter(|x| **x > 0.0) {
+        let place = found.partition_point(|&x| x >= value);
+        if place < LARGEST {
+            found[place..].rotate_right(1);
+            found[place] = value;
+        }
+    }
+    found
 }
 
 #[cfg(test)]
@@ -180,6 +200,15 @@ mod tests {
         assert!((errors.mse - 0.5).abs() < 1e-7);
         assert!((errors.rel_mse - 0.5 / 1.04).abs() < 1e-7, "{}", errors.rel_mse);
         assert!((errors.energy_ratio - 1.25).abs() < 1e-7);
+    }
+
+    #[test]
+    fn the_largest_parts_are_kept_in_order() {
+        assert_eq!(largest(&[1.0, 5.0, f64::NAN, 2.0, 4.0, -1.0, 3.0]), [5.0, 4.0, 3.0, 2.0]);
+        assert_eq!(largest(&[1.0]), [1.0, 0.0, 0.0, 0.0]);
+        let truth = truth(&[1.0, 3.0]);
+        let errors = truth.errors(&[Vec3::splat(2.0), Vec3::splat(3.0)]);
+        assert!((errors.largest[0] - errors.rel_mse).abs() < 1e-12 && errors.largest[1] == 0.0);
     }
 
     #[test]

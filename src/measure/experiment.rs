@@ -36,8 +36,8 @@ pub type Found = (Row, Option<Vec<Vec3>>);
 
 /// Where rows and images are kept, so that an interrupted experiment goes on.
 pub trait Keep {
-    /// What is kept of a unit: only if all of it is there.
-    fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Option<Found>;
+    /// What is kept of a unit. What is there in part only is thrown away: the unit will be done again.
+    fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Result<Option<Found>>;
     /// Keeps what a unit gave.
     fn keep(&mut self, found: &Found) -> Result<()>;
 }
@@ -46,8 +46,8 @@ pub trait Keep {
 pub struct Nowhere;
 
 impl Keep for Nowhere {
-    fn take(&mut self, _: &str, _: u32, _: u32, _: bool) -> Option<Found> {
-        None
+    fn take(&mut self, _: &str, _: u32, _: u32, _: bool) -> Result<Option<Found>> {
+        Ok(None)
     }
 
     fn keep(&mut self, _: &Found) -> Result<()> {
@@ -86,7 +86,7 @@ impl Experiment<'_> {
         for (strategy, ladder) in self.ladders.iter().enumerate() {
             for unit in ladder.iter().flat_map(|&passes| (0..self.runs).map(move |run| Unit { strategy, run, passes }))
             {
-                match kept.take(self.strategies[strategy].name(), unit.run, unit.passes, self.is_last(&unit)) {
+                match kept.take(self.strategies[strategy].name(), unit.run, unit.passes, self.is_last(&unit))? {
                     Some(one) => found[strategy].push(one),
                     None => units.push(unit),
                 }

@@ -30,10 +30,7 @@ pub struct Headline {
 /// Reads every row's curve, and ranks the unbiased ones.
 pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
     let times_s = times(entries);
-    for entry in &mut *entries {
-        entry.summary.seconds_to = ERRORS.map(|error| entry.seconds_to(error).0).to_vec();
-        entry.summary.error_at = times_s.iter().map(|&seconds| entry.error_at(seconds)).collect();
-    }
+    entries.iter_mut().for_each(|entry| entry.read_at(&times_s));
     let ranked_by = ranked_by(entries);
     let ranked: Vec<usize> = (0..entries.len()).filter(|&i| entries[i].is_ranked(ranked_by)).collect();
     let figures: Vec<Figure> = ranked.iter().map(|&i| entries[i].seconds_to(ERRORS[ranked_by]).1).collect();
@@ -45,25 +42,26 @@ pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
 }
 
 impl Entry<'_> {
+    /// Reads its curve at [`ERRORS`] and at `times_s`: all that a row takes which is ranked among no others, another
+    /// renderer's.
+    pub fn read_at(&mut self, times_s: &[f64]) {
+        self.summary.seconds_to = ERRORS.map(|error| self.seconds_to(error).0).to_vec();
+        self.summary.error_at = times_s.iter().map(|&seconds| self.error_at(seconds)).collect();
+    }
+
     /// CPU seconds to an error, with what each run says of them.
     fn seconds_to(&self, error: f64) -> (Reading, Figure) {
-        self.read(error, |bias2, without| self.curve.seconds_to(error, bias2, without))
+        let (how, figure) = self.curve.seconds_to(error, |without| self.counted_bias2(without));
+        (reading(error, how, &figure), figure)
     }
 
     fn error_at(&self, seconds: f64) -> Reading {
-        self.read(seconds, |bias2, without| self.curve.error_at(seconds, bias2, without)).0
+        let (how, figure) = self.curve.error_at(seconds, |without| self.counted_bias2(without));
+        reading(seconds, how, &figure)
     }
 
-    fn read(&self, at: f64, of: impl Fn(f64, Option<usize>) -> (Read, f64)) -> (Reading, Figure) {
-        let of = |without| of(self.jackknife.counted_bias2(&self.summary.claim, without), without);
-        let figure = Figure::jackknife(self.curve.runs(), true, |without| of(without).1);
-        let how = of(None).0;
-        let value = match how {
-            Read::Measured | Read::Extrapolated if figure.estimate > 0.0 => figure.interval(),
-            Read::Measured => Interval::certain(figure.estimate),
-            _ => Interval::NONE,
-        };
-        (Reading { at, value, how }, figure)
+    fn counted_bias2(&self, without: Option<usize>) -> f64 {
+        self.jackknife.counted_bias2(&self.summary.claim, without)
     }
 
     /// Whether it stands among those that are ranked: unbiased, and with a time to the error.
@@ -75,6 +73,15 @@ impl Entry<'_> {
     fn is_candidate(&self) -> bool {
         self.summary.claim == Claim::Unbiased && self.summary.error.is_none() && self.curve.runs() > 0
     }
+}
+
+fn reading(at: f64, how: Read, figure: &Figure) -> Reading {
+    let value = match how {
+        Read::Measured | Read::Extrapolated if figure.estimate > 0.0 => figure.interval(),
+        Read::Measured => Interval::certain(figure.estimate),
+        _ => Interval::NONE,
+    };
+    Reading { at, value, how }
 }
 
 /// The least error that at least half of the unbiased rows reach within what was measured, as a place in [`ERRORS`].

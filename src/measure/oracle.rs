@@ -9,7 +9,7 @@
 use super::compare::Options;
 use super::errors::Truth;
 use super::experiment::Runs;
-use super::figure::{CONFIDENCE, Figure};
+use super::figure::Figure;
 use super::observer::Observer;
 use super::plan::PASSES;
 use super::summary::{blank, counts};
@@ -88,7 +88,7 @@ pub(super) fn settle(
         let own = Figure::mean(runs.images.iter().map(at).collect());
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
         // An exact oracle has no multiple, and an error below the reference's own noise none that means anything.
-        summary.times_oracle = own.over(&floor.errors[rung], CONFIDENCE).map(|ratio| ratio.times(samples));
+        summary.times_oracle = own.over(&floor.errors[rung]).map(|ratio| ratio.times(samples));
     }
     Ok(())
 }

@@ -220,7 +220,7 @@ fn name(stage: &Stage, receivers: &[Receiver], step: Step) -> String {
     receivers.iter().for_each(|at| {
         hasher.update(&at.pixel.to_le_bytes());
     });
-    hasher.finalize().to_hex()[..32].to_owned()
+    hasher.finalize().to_hex().to_string()
 }
 
 /// The content hash that names a scene: 32 hexadecimal digits.

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 /// Squared bias and variance of one run, in units of relMSE.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parts {
+pub(super) struct Parts {
     /// Mean over pixels of (mean of runs - truth)^2 less the variance of that mean: freed of noise, it may be negative.
     pub bias2: f64,
     /// Mean variance of one run.
@@ -13,7 +13,7 @@ pub struct Parts {
 }
 
 /// Images of independent runs.
-pub struct Spread<'a> {
+pub(super) struct Spread<'a> {
     truth: &'a Truth,
     images: &'a [Vec<Vec3>],
     sums: Vec<DVec3>,
@@ -22,7 +22,7 @@ pub struct Spread<'a> {
 
 impl<'a> Spread<'a> {
     /// Of images at the truth's receivers.
-    pub fn of(truth: &'a Truth, images: &'a [Vec<Vec3>]) -> Self {
+    pub(super) fn of(truth: &'a Truth, images: &'a [Vec<Vec3>]) -> Self {
         let n = truth.mean().len();
         let add = |value: fn(DVec3) -> DVec3| {
             (0..n).map(|i| images.iter().fold(DVec3::ZERO, |sum, image| sum + value(image[i].as_dvec3()))).collect()
@@ -31,7 +31,7 @@ impl<'a> Spread<'a> {
     }
 
     /// Bias and variance of all runs, or `without` one; NaN of fewer than two.
-    pub fn parts(&self, without: Option<usize>) -> Parts {
+    pub(super) fn parts(&self, without: Option<usize>) -> Parts {
         let left_out = without.map(|run| &self.images[run]);
         let k = (self.images.len() - usize::from(left_out.is_some())) as f64;
         if k < 2.0 {
@@ -55,6 +55,7 @@ impl<'a> Spread<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::interval::Tail;
     use crate::base::random::Stream;
     use crate::measure::figure::Figure;
 
@@ -70,10 +71,10 @@ mod tests {
             })
             .collect();
         let spread = Spread::of(&truth, &images);
-        let bias2 = Figure::jackknife(16, false, |run| spread.parts(run).bias2).interval();
+        let bias2 = Figure::signed_jackknife(16, |run| spread.parts(run).bias2).interval();
         assert!((bias2.mean * 1.01 - 0.04).abs() < bias2.half_width() * 1.5, "{bias2:?}");
         assert!(bias2.half_width() < 0.004, "{bias2:?}");
-        let variance = Figure::jackknife(16, true, |run| spread.parts(run).variance).interval();
+        let variance = Figure::jackknife(16, Tail::NONE, |run| spread.parts(run).variance).interval();
         assert!((variance.mean * 1.01 * 12.0 - 1.0).abs() < 0.02, "{variance:?}");
         assert!(Spread::of(&truth, &images[..1]).parts(None).variance.is_nan(), "one run knows nothing of variance");
     }

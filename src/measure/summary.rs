@@ -2,11 +2,12 @@
 
 use super::errors::Truth;
 use super::experiment::Runs;
-use super::figure::{CONFIDENCE, Figure};
+use super::figure::{CONFIDENCE, Figure, error, tail};
 use super::plan::Pilot;
 use super::spread::{Parts, Spread};
 use crate::base::error::Result;
-use crate::base::statistics::Moments;
+use crate::base::interval::Bounds;
+use crate::base::statistics::{Moments, normal_quantile};
 use crate::record::{Claim, Counts, Interval, Point, Row, Summary};
 use crate::render::counts as render;
 use crate::strategy::registry::Configured;
@@ -97,28 +98,34 @@ pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32
     summary.cpu_s = mean(|r| r.cpu_s);
     summary.wall_s = Moments::of(values(|r| r.wall_s)).mean;
     summary.heap_bytes = last.iter().map(|r| r.heap_bytes).max().unwrap_or(0);
-    summary.rel_mse = mean(|r| r.rel_mse);
-    summary.mse = mean(|r| r.mse);
+    let tail = tail(&last);
+    summary.rel_mse = error(&last).interval();
+    // Its tail is taken to be as heavy as that of relMSE.
+    let unit = Moments::of(values(|r| r.mse)).mean / summary.rel_mse.mean;
+    summary.mse = Figure::error(values(|r| r.mse), tail.times(unit)).interval();
     summary.rel_mse_trimmed = mean(|r| r.rel_mse_trimmed);
     summary.mean_bias = bias(truth, &last, CONFIDENCE);
     summary.detectable_bias =
         Moments::of(values(|r| r.energy_ratio)).detectable(1.0 - CONFIDENCE).hypot(2.8 * truth.own_energy_error());
     let k = runs.images.len();
     if k == last.len() && k > 2 {
-        summary.rel_bias2 = Figure::jackknife(k, false, |run| jackknife.parts(run).bias2).interval();
+        summary.rel_bias2 = Figure::signed_jackknife(k, |run| jackknife.parts(run).bias2).interval();
         let cpu_s = |without: Option<usize>| {
             let kept = last.iter().enumerate().filter(|(run, _)| Some(*run) != without);
             kept.map(|(_, row)| row.cpu_s).sum::<f64>() / (k - usize::from(without.is_some())) as f64
         };
         let v = |without| jackknife.parts(without).variance * cpu_s(without);
-        summary.variance_seconds =
-            if v(None) > 0.0 { Figure::jackknife(k, true, v).interval() } else { Interval::certain(v(None)) };
+        summary.variance_seconds = if v(None) > 0.0 {
+            Figure::jackknife(k, tail.times(summary.cpu_s.mean), v).interval()
+        } else {
+            Interval::certain(v(None))
+        };
         if summary.claim.may_be_biased() {
             // A b^2 that may be 0 gives a t* that may be anything.
             let seen = summary.rel_bias2.low > 0.0 && v(None) > 0.0;
             let balance = |without| v(without) / jackknife.parts(without).bias2;
             summary.balance_s = Some(if seen {
-                Figure::jackknife(k, true, balance).interval()
+                Figure::jackknife(k, tail.times(summary.cpu_s.mean / jackknife.all.bias2), balance).interval()
             } else {
                 Interval { mean: f64::INFINITY, low: summary.cpu_s.mean, high: f64::INFINITY }
             });
@@ -130,17 +137,21 @@ pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32
 
 /// The bias of the image's mean, as a share of it, with an interval at a confidence within (0, 1).
 pub fn bias(truth: &Truth, rows: &[&Row], confidence: f64) -> Interval {
-    let figure = Figure::mean(rows.iter().map(|row| row.energy_ratio - 1.0).collect());
-    let (low, high) = figure.bounds(confidence);
+    let figure = Figure::signed_mean(rows.iter().map(|row| row.energy_ratio - 1.0).collect());
+    let Bounds { low, high } = figure.bounds(confidence);
     // The reference's own error does not go away with more runs.
-    let own = crate::base::statistics::normal_quantile(0.5 + 0.5 * confidence) * truth.own_energy_error();
+    let own = normal_quantile(0.5 + 0.5 * confidence) * truth.own_energy_error();
     let mean = figure.estimate;
     Interval { mean, low: mean - (mean - low).hypot(own), high: mean + (high - mean).hypot(own) }
 }
 
 fn point(passes: u32, rows: &[&Row]) -> Option<Point> {
     let mean = |value: fn(&Row) -> f64| Figure::mean(rows.iter().map(|row| value(row)).collect()).interval();
-    (!rows.is_empty()).then(|| Point { passes, cpu_s: mean(|r| r.setup_cpu_s + r.cpu_s), rel_mse: mean(|r| r.rel_mse) })
+    (!rows.is_empty()).then(|| Point {
+        passes,
+        cpu_s: mean(|r| r.setup_cpu_s + r.cpu_s),
+        rel_mse: error(rows).interval(),
+    })
 }
 
 /// CPU seconds of arrival and of a pass: of the smallest and the largest budget, run by run; unknown from one budget.
@@ -154,7 +165,7 @@ fn cost(runs: &Runs, ladder: &[u32]) -> [Interval; 2] {
     let pairs = || few.iter().zip(&many);
     let passes = pairs().map(|(few, many)| pass(few, many)).collect();
     let arrivals = pairs().map(|(few, many)| few.cpu_s - f64::from(first) * pass(few, many)).collect();
-    [Figure::mean(arrivals).interval(), Figure::mean(passes).interval()]
+    [Figure::signed_mean(arrivals).interval(), Figure::signed_mean(passes).interval()]
 }
 
 /// Counts as they are recorded.
@@ -177,6 +188,7 @@ pub(super) fn counts(found: render::Counts) -> Counts {
 /// Whether the two halves of the runs differ by more than their intervals.
 fn unstable(rows: &[&Row]) -> bool {
     let (first, second) = rows.split_at(rows.len() / 2);
-    let [a, b] = [first, second].map(|half| Figure::mean(half.iter().map(|row| row.rel_mse).collect()).interval());
+    let [a, b] =
+        [first, second].map(|half| Figure::error(half.iter().map(|row| row.rel_mse).collect(), tail(half)).interval());
     first.len() > 1 && (a.low > b.high || b.low > a.high)
 }

@@ -1,7 +1,7 @@
 //! A peer's images as rows, on the same receivers and against the same reference as those of the strategies.
 //!
-//! A script renders all its runs in one process: what comes before the first sample is paid once and is its set-up. Its
-//! time is its own CPU time; what exactly, its remarks say.
+//! A script renders all its runs in one process: what is paid once is its set-up, and each image is rendered in one block.
+//! Its time is its own CPU time; what exactly, its remarks say.
 
 use super::agreement::{Agreement, SIDE};
 use super::mask;
@@ -12,14 +12,16 @@ use crate::base::file::write_whole;
 use crate::base::random::RunKey;
 use crate::export::export;
 use crate::image::exr;
+use crate::measure::curve::Curve;
 use crate::measure::errors::Truth;
 use crate::measure::experiment::Runs;
 use crate::measure::films::Films;
+use crate::measure::headline::Entry;
 use crate::measure::observer::Observer;
 use crate::measure::summary::summarise;
 use crate::measure::target::Target;
 use crate::record::store::RowWriter;
-use crate::record::{Claim, Row, Summary};
+use crate::record::{Claim, Kind, ResultFolder, Row, Summary};
 use crate::visibility::stage::Stage;
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -32,14 +34,18 @@ pub struct Options<'a> {
     pub peers: &'a [Peer],
     /// The Python that has them.
     pub python: &'a Path,
-    /// Sample counts, ascending; the script is not run if there are none.
+    /// Sample counts, ascending, as many as the passes of a strategy: [`budgets`](crate::measure::plan::budgets).
     pub spp: &'a [u32],
+    /// CPU seconds at which errors are given: those of the scene.
+    pub times_s: &'a [f64],
     /// Independent runs.
     pub runs: u32,
     /// The user's seed.
     pub seed: u64,
-    /// The result folder.
+    /// The result folder, a marked one.
     pub folder: &'a Path,
+    /// Where the last image of each finished run is kept.
+    pub films: &'a Films,
     /// How long a script may say nothing.
     pub patience: Duration,
 }
@@ -76,18 +82,18 @@ pub fn measure(
         stage,
         truth: truth.only(&places),
         pixels: places.iter().map(|&i| receivers[i].pixel).collect(),
-        films: Films::of(options.folder),
-        folder: scratch(options.folder),
+        folder: options.folder.join("peers"),
         options,
     };
     let mut measured = Measured::default();
     for peer in options.peers {
-        std::fs::create_dir_all(&ground.folder).map_err(Error::io("create", &ground.folder))?;
+        // Exported scenes, scripts and images lie there while they are needed.
+        let scratch = ResultFolder::open(&ground.folder, Kind::Scratch)?;
         let mut session = Session::new(&ground, peer, before);
         watch.begin(&peer.name, session.images());
         let outcome = session.run(writer, watch);
         watch.end();
-        discard(&ground.folder);
+        discard(&scratch);
         let (summary, notes) = match outcome {
             Err(Trouble::Stop(error)) => return Err(error),
             Err(Trouble::Missing(why)) => {
@@ -111,16 +117,11 @@ pub fn measure(
     Ok(measured)
 }
 
-/// Where exported scenes, scripts and images lie while they are needed.
-fn scratch(folder: &Path) -> PathBuf {
-    folder.join("peers")
-}
-
-/// Removes a folder; one in which a process that was just stopped has a child that still writes, a moment later, and if
-/// that is not enough it stays.
-fn discard(folder: &Path) {
+/// Removes a scratch folder; one in which a process that was just stopped has a child that still writes, a moment later,
+/// and if that is not enough it stays marked, for the next run to use.
+fn discard(scratch: &ResultFolder) {
     for _ in 0..20 {
-        if std::fs::remove_dir_all(folder).is_ok() {
+        if scratch.remove().is_ok() {
             return;
         }
         std::thread::sleep(Duration::from_millis(50));
@@ -134,7 +135,6 @@ struct Ground<'a> {
     truth: Truth,
     /// The pixels of those.
     pixels: Vec<u32>,
-    films: Films,
     folder: PathBuf,
     options: &'a Options<'a>,
 }
@@ -167,7 +167,8 @@ impl<'a> Session<'a> {
                 .iter()
                 .filter(|r| r.scene == scene && r.strategy == peer.name && r.run == run && r.error.is_none())
                 .collect();
-            let Some(film) = ground.films.load(&scene, &peer.name, run, ground.pixels.len()) else { continue };
+            let last = session.last(run);
+            let Some(film) = ground.options.films.load(&last, ground.pixels.len()) else { continue };
             if rows.len() == ground.options.spp.len() {
                 session.rows.extend(rows.into_iter().cloned());
                 session.images.insert(run, film);
@@ -178,6 +179,12 @@ impl<'a> Session<'a> {
 
     fn scene(&self) -> String {
         self.ground.stage.scene().name().to_owned()
+    }
+
+    /// The row of a run's largest sample count, without its numbers.
+    fn last(&self, run: u32) -> Row {
+        let spp = self.ground.options.spp.last().copied().unwrap_or(0);
+        Row::blank(self.scene(), self.peer.name.clone(), run, spp)
     }
 
     /// The runs still to do, each with its seed.
@@ -296,7 +303,7 @@ impl<'a> Session<'a> {
         writer.write(&row)?;
         self.rows.push(row);
         if last {
-            self.ground.films.save(&self.scene(), &self.peer.name, run, &seen)?;
+            self.ground.options.films.save(&self.last(run), &seen)?;
             self.images.insert(run, seen);
         }
         Ok(())
@@ -307,10 +314,14 @@ impl<'a> Session<'a> {
     }
 
     fn summary(&self) -> Summary {
+        let Options { spp, times_s, .. } = *self.ground.options;
         let mut rows = self.rows.clone();
         rows.sort_by_key(|row| (row.passes, row.run));
         let runs = Runs { rows, images: self.images.values().cloned().collect() };
-        summarise(self.blank(), &self.ground.truth, &runs, self.ground.options.spp).0
+        let (mut summary, jackknife) = summarise(self.blank(), &self.ground.truth, &runs, spp);
+        // Read as the strategies are, at the same errors and times; but it says nothing of its bias, so it has no rank.
+        Entry { summary: &mut summary, curve: Curve::of(&runs, spp), jackknife }.read_at(times_s);
+        summary
     }
 
     /// What a reader must know, as lines under the scene.

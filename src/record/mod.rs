@@ -5,8 +5,10 @@
 //! Numbers are in base units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A
 //! [`study`]'s folder holds `study.json` and a CSV file a table in the same manner.
 
+pub mod folder;
 pub mod interval;
 mod number;
+mod origin;
 pub mod row;
 pub mod run;
 pub mod scene;
@@ -15,6 +17,7 @@ pub mod study;
 pub mod study_store;
 pub mod summary;
 
+pub use folder::{Kind, ResultFolder};
 pub use interval::Interval;
 pub use row::Row;
 pub use run::{Machine, RunRecord};

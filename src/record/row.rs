@@ -1,7 +1,9 @@
 //! One line of `runs.csv`: one strategy, one independent run, one budget, one scene.
 
+use crate::base::interval::LARGEST;
+
 /// The columns, in order.
-pub const COLUMNS: [&str; 24] = [
+pub const COLUMNS: [&str; 28] = [
     "scene",
     "strategy",
     "run",
@@ -14,6 +16,10 @@ pub const COLUMNS: [&str; 24] = [
     "rel_mse",
     "rel_mse_trimmed",
     "trimmed_share",
+    "largest_0",
+    "largest_1",
+    "largest_2",
+    "largest_3",
     "energy_ratio",
     "decile_0",
     "decile_1",
@@ -55,6 +61,8 @@ pub struct Row {
     pub rel_mse_trimmed: f64,
     /// The share of relMSE that those pixels hold, within `[0, 1]`.
     pub trimmed_share: f64,
+    /// What the worst pixels add to relMSE, the worst first: they say how far its mean can be trusted.
+    pub largest: [f64; LARGEST],
     /// Mean of the image over mean of the reference.
     pub energy_ratio: f64,
     /// relMSE by tenths of the reference's luminance, the darkest first; columns `decile_0` to `decile_9`.
@@ -90,10 +98,16 @@ impl Row {
             rel_mse: none,
             rel_mse_trimmed: none,
             trimmed_share: none,
+            largest: [none; LARGEST],
             energy_ratio: none,
             deciles: [none; 10],
             error: None,
         }
+    }
+
+    /// What tells it apart from all others of a comparison: scene, strategy, run and passes.
+    pub fn key(&self) -> (&str, &str, u32, u32) {
+        (&self.scene, &self.strategy, self.run, self.passes)
     }
 
     /// The row's fields in the order of [`COLUMNS`]. Line breaks in texts become spaces: a row is one line.
@@ -102,6 +116,7 @@ impl Row {
         // `{:?}` is the shortest text that reads back as the same number; it turns to exponents where `{}` would write
         // 300 zeros.
         let number = |v: f64| if self.error.is_some() && v.is_nan() { String::new() } else { format!("{v:?}") };
+        let [l0, l1, l2, l3] = self.largest.map(number);
         let [d0, d1, d2, d3, d4, d5, d6, d7, d8, d9] = self.deciles.map(number);
         [
             text(&self.scene),
@@ -116,6 +131,10 @@ impl Row {
             number(self.rel_mse),
             number(self.rel_mse_trimmed),
             number(self.trimmed_share),
+            l0,
+            l1,
+            l2,
+            l3,
             number(self.energy_ratio),
             d0,
             d1,
@@ -147,7 +166,7 @@ impl Row {
         };
         let mut deciles = [0.0; 10];
         for (i, decile) in deciles.iter_mut().enumerate() {
-            *decile = number(13 + i)?;
+            *decile = number(17 + i)?;
         }
         Ok(Self {
             scene: fields[0].to_owned(),
@@ -162,7 +181,8 @@ impl Row {
             rel_mse: number(9)?,
             rel_mse_trimmed: number(10)?,
             trimmed_share: number(11)?,
-            energy_ratio: number(12)?,
+            largest: [number(12)?, number(13)?, number(14)?, number(15)?],
+            energy_ratio: number(16)?,
             deciles,
             error,
         })

@@ -28,6 +28,9 @@ pub struct RunRecord {
     pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,
+    /// The crate's version; empty in records that are older than this field.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
     /// Revision of the source.
     pub revision: String,
     /// The user's seed.

@@ -1,11 +1,12 @@
-//! Where records lie: result folders that are never overwritten, rows that survive an interruption.
+//! Where the record and the rows of a comparison lie: files in its folder that survive an interruption.
 
 use super::row::COLUMNS;
-use super::{Row, RunRecord, SCHEMA};
+use super::{Row, RunRecord, SCHEMA, origin};
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -14,23 +15,6 @@ use std::path::{Path, PathBuf};
 pub const RUN_FILE: &str = "run.json";
 /// The file of the [`Row`]s in their folder.
 pub const ROWS_FILE: &str = "runs.csv";
-
-/// Makes `<results>/<date>-<scene>-<short revision>/` and gives its path; where it exists, `-2`, `-3` ... is appended.
-///
-/// `scene` is the scene's or study's name; the revision is shortened to its first 7 characters.
-pub fn create_folder(results: &Path, date: &str, scene: &str, revision: &str) -> Result<PathBuf> {
-    fs::create_dir_all(results).map_err(Error::io("create", results))?;
-    let short: String = revision.chars().take(7).collect();
-    let name = file_name(&format!("{date}-{scene}-{short}"));
-    let mut folder = results.join(&name);
-    for next in 2.. {
-        match fs::create_dir(&folder) {
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => folder = results.join(format!("{name}-{next}")),
-            made => return made.map(|()| folder.clone()).map_err(Error::io("create", folder)),
-        }
-    }
-    unreachable!("the numbers do not end");
-}
 
 /// `name` with everything but ASCII letters, digits, `.`, `_` and `-` replaced by `-`, safe to name a file with.
 pub fn file_name(name: &str) -> String {
@@ -46,6 +30,23 @@ pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
 /// Reads `run.json` from `folder`; one of another schema is refused.
 pub fn read_run(folder: &Path) -> Result<RunRecord> {
     read_record(&folder.join(RUN_FILE), SCHEMA)
+}
+
+/// What is in `folder` of the comparison that `own` begins: its record where it was begun there before, finished or not.
+///
+/// Another comparison is refused, by what it differs in.
+pub fn begun(folder: &Path, own: &RunRecord) -> Result<Option<RunRecord>> {
+    if folder.join(RUN_FILE).exists() {
+        let earlier = read_run(folder)?;
+        origin::check(folder, "comparison", &earlier.command, &earlier.origin(), &own.origin())?;
+        return Ok(Some(earlier));
+    }
+    if folder.join(ROWS_FILE).exists() {
+        // The record is written first.
+        let text = format!("holds rows whose {RUN_FILE} is gone: name another folder");
+        return Err(Error::Invalid(format!("{} {text}", folder.display())));
+    }
+    Ok(None)
 }
 
 /// Writes a record as JSON, whole or not at all.
@@ -141,19 +142,29 @@ impl RowWriter {
         Ok(writer)
     }
 
-    /// Goes on with the `runs.csv` of an interrupted run and gives the rows of it that `keep` accepts; the others,
-    /// which will be made again, and a line cut short are removed.
-    pub fn resume(folder: &Path, keep: impl Fn(&Row) -> bool) -> Result<(Self, Vec<Row>)> {
+    /// Goes on with the `runs.csv` of an interrupted run, or begins it, and gives its rows.
+    ///
+    /// A line cut short, and all but the last of rows for the same scene, strategy, run and budget are removed.
+    pub fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
         let path = folder.join(ROWS_FILE);
-        let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
-        let rows: Vec<Row> = parse_rows(&path, &text)?.rows.into_iter().filter(keep).collect();
-        let mut kept = line(&COLUMNS).map_err(Error::io("write", &path))?;
-        for row in &rows {
-            kept.extend(line(&row.fields()).map_err(Error::io("write", &path))?);
-        }
-        write_whole(&path, &kept)?;
-        let file = OpenOptions::new().append(true).open(&path).map_err(Error::io("write", &path))?;
-        Ok((Self { file, path }, rows))
+        let text = match fs::read_to_string(&path) {
+            Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
+            read => read.map_err(Error::io("read", &path))?,
+        };
+        let mut rows = parse_rows(&path, &text)?.rows;
+        let mut seen = HashSet::new();
+        let mut is_last: Vec<bool> = rows.iter().rev().map(|row| seen.insert(row.key())).collect();
+        rows.retain(|_| is_last.pop() == Some(true));
+        Ok((Self { file: rewritten(&path, &rows)?, path }, rows))
+    }
+
+    /// Removes rows, which will be made again.
+    pub fn forget(&mut self, unwanted: impl Fn(&Row) -> bool) -> Result<()> {
+        let text = fs::read_to_string(&self.path).map_err(Error::io("read", &self.path))?;
+        let mut rows = parse_rows(&self.path, &text)?.rows;
+        rows.retain(|row| !unwanted(row));
+        self.file = rewritten(&self.path, &rows)?;
+        Ok(())
     }
 
     /// Appends one row; it is in the file when this returns.
@@ -161,10 +172,25 @@ impl RowWriter {
         self.append(&row.fields())
     }
 
+    /// Sees to it that all rows outlive a loss of power: to be called before a record says that they are there.
+    pub fn sync(&self) -> Result<()> {
+        self.file.sync_all().map_err(Error::io("write", &self.path))
+    }
+
     fn append<T: AsRef<[u8]>>(&mut self, fields: &[T]) -> Result<()> {
         // One call for the whole line: a `File` has no buffer of its own that could be lost.
         line(fields).and_then(|line| self.file.write_all(&line)).map_err(Error::io("write", &self.path))
     }
+}
+
+/// The file with these rows and no others, open to append more.
+fn rewritten(path: &Path, rows: &[Row]) -> Result<File> {
+    let mut text = line(&COLUMNS).map_err(Error::io("write", path))?;
+    for row in rows {
+        text.extend(line(&row.fields()).map_err(Error::io("write", path))?);
+    }
+    write_whole(path, &text)?;
+    OpenOptions::new().append(true).open(path).map_err(Error::io("write", path))
 }
 
 /// The fields as a line of CSV.

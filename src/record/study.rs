@@ -22,8 +22,15 @@ pub struct StudyRecord {
     pub question: String,
     /// The command line.
     pub command: String,
+    /// All that decides the cells, in canonical form: content of the scenes, strategies, options. An interrupted study is
+    /// resumed only by one that asks for the same. Empty in records that are older than this field.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,
+    /// The crate's version; empty in records that are older than this field.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
     /// Revision of the source.
     pub revision: String,
     /// The user's seed.
@@ -38,7 +45,7 @@ pub struct StudyRecord {
     pub warnings: Vec<String>,
     /// Whether it came to its end; otherwise some rows are missing.
     pub finished: bool,
-    /// Wall seconds that it took; 0 before its end.
+    /// Wall seconds that it took, of one that was resumed its last part; 0 before its end.
     #[serde(with = "number")]
     pub wall_s: f64,
     /// What a reader must know of all tables: how it was measured, what was left out and why.

@@ -3,69 +3,118 @@
 
 use super::store::{self, input, line};
 use super::study::{Cell, Cells, Format, PictureRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord};
+use super::{ResultFolder, origin};
 use crate::base::error::{Error, Result};
-use std::fs::{self, OpenOptions};
-use std::io::Write;
+use crate::base::file::write_whole;
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The file of a [`StudyRecord`] in its folder.
 pub const STUDY_FILE: &str = "study.json";
 
-/// A study being made: rows are appended to its files one by one, so that an interruption loses none.
+/// A study being made, in a folder that is its own: what is known is on disk at once, so that an interruption loses
+/// none of it, and a study that is begun again asks what it [`has`](Self::has).
 pub struct StudyWriter {
-    folder: PathBuf,
+    folder: ResultFolder,
     study: Study,
 }
 
 impl StudyWriter {
-    /// Begins a study in `folder`, which must hold none yet.
-    pub fn create(folder: &Path, record: StudyRecord) -> Result<Self> {
-        if folder.join(STUDY_FILE).exists() {
-            let folder = folder.display();
-            let text = format!("{folder} holds a study; results are never overwritten: name another folder");
-            return Err(Error::Invalid(text));
+    /// Begins the study that `record` describes in `folder`, or goes on with it where it was begun there.
+    ///
+    /// Another study is refused, by what it differs in.
+    pub fn open(folder: ResultFolder, record: StudyRecord) -> Result<Self> {
+        let path = folder.path();
+        let study = if is_study(path) {
+            let study = read_study(path)?;
+            let earlier = &study.record;
+            if earlier.study != record.study {
+                let text = format!("{} holds the study {}: name another folder", path.display(), earlier.study);
+                return Err(Error::Invalid(text));
+            }
+            origin::check(path, "study", &earlier.command, &earlier.origin(), &record.origin())?;
+            if earlier.tables != record.tables {
+                let text = format!("{} holds the same study with other tables: name another folder", path.display());
+                return Err(Error::Invalid(text));
+            }
+            study
+        } else {
+            let rows = vec![Vec::new(); record.tables.len()];
+            write(path, &record)?;
+            Study { record, rows }
+        };
+        if !study.record.finished {
+            let tables = study.record.tables.iter().zip(&study.rows);
+            tables.into_iter().try_for_each(|(table, rows)| write_table(path, table, rows))?;
         }
-        for table in &record.tables {
-            let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
-            append(&table_file(folder, table), &names, true)?;
-        }
-        write(folder, &record)?;
-        let rows = vec![Vec::new(); record.tables.len()];
-        Ok(Self { folder: folder.to_owned(), study: Study { record, rows } })
+        Ok(Self { folder, study })
     }
 
-    /// Adds a row to the table of that name; it is in its file when this returns.
+    /// Whether exactly `count` rows of a table have the cells of `key`: all that was measured together is there.
     ///
     /// # Panics
     ///
-    /// If there is no such table or the cells are not those of its columns: a mistake in a study's own code.
+    /// If there is no such table or column: a mistake in a study's own code, here as below.
+    pub fn has(&self, table: &str, key: Key<'_>, count: usize) -> bool {
+        let (record, rows) = self.table(table);
+        rows.iter().filter(|cells| has(record, cells, key)).count() == count
+    }
+
+    /// Puts rows that were measured together into a table, in place of all that have the cells of `key`.
+    ///
+    /// All of them are in the table's file when this returns, or none if it is interrupted.
+    ///
+    /// # Panics
+    ///
+    /// If a row does not have the cells of `key` or does not fit the table's columns.
+    pub fn put(&mut self, table: &str, key: Key<'_>, rows: Vec<Cells>) -> Result<()> {
+        let place = self.place(table);
+        let (record, there) = (&self.study.record.tables[place], &mut self.study.rows[place]);
+        for cells in &rows {
+            let fits = cells.len() == record.columns.len()
+                && record.columns.iter().zip(cells).all(|(column, cell)| column.format.takes(cell));
+            assert!(fits, "a row of `{table}` does not fit its columns: {cells:?}");
+            assert!(has(record, cells, key), "a row of `{table}` is not one of {key:?}: {cells:?}");
+        }
+        let at = there.iter().position(|cells| has(record, cells, key)).unwrap_or(there.len());
+        there.retain(|cells| !has(record, cells, key));
+        there.splice(at..at, rows);
+        write_table(self.folder.path(), record, there)
+    }
+
+    /// Adds a row.
     pub fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
-        let at = self.place(table);
-        let columns = &self.study.record.tables[at].columns;
-        let fits = cells.len() == columns.len() && columns.iter().zip(&cells).all(|(c, cell)| c.format.takes(cell));
-        assert!(fits, "a row of `{table}` does not fit its columns: {cells:?}");
-        let fields: Vec<String> = cells.iter().map(field).collect();
-        append(&table_file(&self.folder, &self.study.record.tables[at]), &fields, false)?;
-        self.study.rows[at].push(cells);
-        Ok(())
+        let place = self.place(table);
+        self.study.rows[place].push(cells);
+        write_table(self.folder.path(), &self.study.record.tables[place], &self.study.rows[place])
     }
 
-    /// Adds a note about all of the study.
-    pub fn note(&mut self, note: String) {
+    /// Adds a note about all of the study, once however often it is begun.
+    pub fn note(&mut self, note: String) -> Result<()> {
+        if self.study.record.notes.contains(&note) {
+            return Ok(());
+        }
         self.study.record.notes.push(note);
+        write(self.folder.path(), &self.study.record)
     }
 
-    /// Notes a picture; gives the file that it is to be written to.
-    pub fn picture(&mut self, file: &str, title: String) -> PathBuf {
-        self.study.record.pictures.push(PictureRecord { file: file.to_owned(), title });
-        self.folder.join(file)
+    /// Notes a picture; gives the file that it is to be written to, `None` where that is there.
+    pub fn picture(&mut self, file: &str, title: String) -> Result<Option<PathBuf>> {
+        let pictures = &mut self.study.record.pictures;
+        if !pictures.iter().any(|picture| picture.file == file) {
+            pictures.push(PictureRecord { file: file.to_owned(), title });
+            write(self.folder.path(), &self.study.record)?;
+        }
+        let path = self.folder.path().join(file);
+        Ok((!path.exists()).then_some(path))
     }
 
     /// A table and its rows so far.
     ///
     /// # Panics
     ///
-    /// If there is no such table: a mistake in a study's own code.
+    /// If there is no such table.
     pub fn table(&self, name: &str) -> (&TableRecord, &[Cells]) {
         let at = self.place(name);
         (&self.study.record.tables[at], &self.study.rows[at])
@@ -75,12 +124,28 @@ impl StudyWriter {
         self.study.record.tables.iter().position(|t| t.name == table).expect("a study names its own tables")
     }
 
-    /// Ends the study, which took `wall_s` seconds.
-    pub fn finish(mut self, wall_s: f64) -> Result<Study> {
-        (self.study.record.finished, self.study.record.wall_s) = (true, wall_s);
-        write(&self.folder, &self.study.record)?;
+    /// Ends the study, which took `wall_s` seconds; one that has ended before stays as it is.
+    ///
+    /// `derive` writes what follows from a study into its folder: what says that it is finished is written after that.
+    pub fn finish(mut self, wall_s: f64, derive: impl FnOnce(&Path, &Study) -> Result<()>) -> Result<Study> {
+        let finished = self.study.record.finished;
+        if !finished {
+            (self.study.record.finished, self.study.record.wall_s) = (true, wall_s);
+        }
+        derive(self.folder.path(), &self.study)?;
+        if !finished {
+            write(self.folder.path(), &self.study.record)?;
+        }
         Ok(self.study)
     }
+}
+
+/// Columns and their cells, by which rows that were measured together are told from others; all rows where there are none.
+pub type Key<'a> = &'a [(&'a str, Cell)];
+
+/// Whether a row has the cells of `key`.
+fn has(table: &TableRecord, cells: &Cells, key: Key<'_>) -> bool {
+    key.iter().all(|(column, cell)| cells[table.column(column).expect("a study names its own columns")] == *cell)
 }
 
 /// Whether `folder` holds a study.
@@ -88,12 +153,12 @@ pub fn is_study(folder: &Path) -> bool {
     folder.join(STUDY_FILE).exists()
 }
 
-/// Reads the study in `folder`. A last line of a table without its line break is an interrupted write and left out;
-/// anything else that is not a row is an error that names file, line and column.
+/// Reads the study in `folder`. A last line of a table without its line break is an interrupted write and left out, and
+/// a table of an unfinished study may not be there yet; anything else that is not a row is an error that names file, line and column.
 pub fn read_study(folder: &Path) -> Result<Study> {
     let record: StudyRecord = store::read_record(&folder.join(STUDY_FILE), STUDY_SCHEMA)?;
-    let rows =
-        record.tables.iter().map(|table| read_table(&table_file(folder, table), table)).collect::<Result<_>>()?;
+    let read = |table| read_table(&table_file(folder, table), table, record.finished);
+    let rows = record.tables.iter().map(read).collect::<Result<_>>()?;
     Ok(Study { record, rows })
 }
 
@@ -105,13 +170,22 @@ fn table_file(folder: &Path, table: &TableRecord) -> PathBuf {
     folder.join(format!("{}.csv", store::file_name(&table.name)))
 }
 
-fn append<T: AsRef<[u8]>>(path: &Path, fields: &[T], new: bool) -> Result<()> {
-    let mut file = OpenOptions::new().append(true).create_new(new).open(path).map_err(Error::io("write", path))?;
-    line(fields).and_then(|line| file.write_all(&line)).map_err(Error::io("write", path))
+fn write_table(folder: &Path, table: &TableRecord, rows: &[Cells]) -> Result<()> {
+    let path = table_file(folder, table);
+    let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+    let mut text = line(&names).map_err(Error::io("write", &path))?;
+    for cells in rows {
+        let fields: Vec<String> = cells.iter().map(field).collect();
+        text.extend(line(&fields).map_err(Error::io("write", &path))?);
+    }
+    write_whole(&path, &text)
 }
 
-fn read_table(path: &Path, table: &TableRecord) -> Result<Vec<Cells>> {
-    let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+fn read_table(path: &Path, table: &TableRecord, finished: bool) -> Result<Vec<Cells>> {
+    let text = match fs::read_to_string(path) {
+        Err(e) if e.kind() == ErrorKind::NotFound && !finished => return Ok(Vec::new()),
+        read => read.map_err(Error::io("read", path))?,
+    };
     let whole = &text[..store::finished_bytes(&text)];
     let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(whole.as_bytes());
     let mut rows = Vec::new();

@@ -4,6 +4,7 @@
 //! give the same bytes. Nothing here knows a strategy: names, claims and figures come from the records.
 
 mod chart;
+mod complete;
 mod facts;
 mod headline;
 mod mark;
@@ -26,7 +27,7 @@ use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use crate::record::study::Study;
 use crate::record::study_store::{is_study, read_study};
-use crate::record::{Row, RunRecord, store};
+use crate::record::{ResultFolder, Row, RunRecord, store};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -92,10 +93,18 @@ pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
 }
 
 /// Writes the pages and plots of a result folder again, from its raw records and rows; gives their paths.
+///
+/// A folder without a record of a comparison or a study is refused, as is one that another process writes in.
 pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
+    let _held = ResultFolder::hold(folder)?;
     let files = read(folder)?;
-    files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))?;
+    write(folder, &files)?;
     Ok(files.into_iter().map(|file| folder.join(file.name)).collect())
+}
+
+/// Writes derived files into a result folder.
+pub fn write(folder: &Path, files: &[Derived]) -> Result<()> {
+    files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))
 }
 
 /// A derived file that is not what the raw rows say.
@@ -104,6 +113,14 @@ pub enum Drift {
     /// It is not there.
     #[error("{}: missing", .0.display())]
     Missing(PathBuf),
+    /// Raw rows that are doubled, missing or of nothing that was run.
+    #[error("{}: {what}", .file.display())]
+    Rows {
+        /// The file that they stand in, or should.
+        file: PathBuf,
+        /// Which they are.
+        what: String,
+    },
     /// It says something else, from this line on.
     #[error("{}:{line}: differs from the raw rows", .file.display())]
     Differs {
@@ -114,9 +131,10 @@ pub enum Drift {
     },
 }
 
-/// Compares the pages and plots in a result folder with what its raw rows say; none differs where the list is empty.
+/// Looks for raw rows that are doubled or missing, and compares the pages and plots in a result folder with what the
+/// rows say; all is right where the list is empty.
 pub fn check(folder: &Path) -> Result<Vec<Drift>> {
-    let mut drifts = Vec::new();
+    let mut drifts: Vec<Drift> = faults(folder)?;
     for Derived { name, text } in read(folder)? {
         let file = folder.join(name);
         match fs::read(&file) {
@@ -127,6 +145,15 @@ pub fn check(folder: &Path) -> Result<Vec<Drift>> {
         }
     }
     Ok(drifts)
+}
+
+fn faults(folder: &Path) -> Result<Vec<Drift>> {
+    if is_study(folder) {
+        let of = |(table, what): (String, String)| Drift::Rows { file: folder.join(format!("{table}.csv")), what };
+        return Ok(complete::doubled(&read_study(folder)?).into_iter().map(of).collect());
+    }
+    let faults = complete::faults(&store::read_run(folder)?, &store::read_rows(folder)?.rows);
+    Ok(faults.into_iter().map(|what| Drift::Rows { file: folder.join(store::ROWS_FILE), what }).collect())
 }
 
 fn read(folder: &Path) -> Result<Vec<Derived>> {

@@ -16,7 +16,7 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
     let machine = &run.machine;
     _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", run.command);
     _ = writeln!(text, "- date: {}", run.date);
-    _ = writeln!(text, "- revision: {}", run.revision);
+    _ = writeln!(text, "- revision: {}", built(&run.version, &run.revision));
     _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
     _ = writeln!(text, "- compiler: {}; {}", run.compiler, run.flags);
     _ = writeln!(text, "- seed: {}", run.seed);
@@ -34,6 +34,11 @@ pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -
     }
     _ = writeln!(text, "\nMade by `{}` ({}, revision {}, {}).", run.command, run.date, run.revision, run.machine.cpu);
     text
+}
+
+/// What a program was built from; older records know no version.
+pub(super) fn built(version: &str, revision: &str) -> String {
+    if version.is_empty() { revision.to_owned() } else { format!("{revision}, version {version}") }
 }
 
 /// Name, facts, notes, warnings and plot.

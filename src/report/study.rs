@@ -3,6 +3,7 @@
 use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::Mark;
 use super::number::{Estimate, NONE, bytes, grouped, percent, short};
+use super::page::built;
 use super::sheet::{Entry, Head, Line, Sheet, WIDTH, broken};
 use crate::base::error::Result;
 use crate::record::study::{
@@ -29,7 +30,7 @@ pub(super) fn page(study: &Study) -> String {
     let machine = &record.machine;
     _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", record.command);
     _ = writeln!(text, "- date: {}; {} wall seconds", record.date, short(record.wall_s));
-    _ = writeln!(text, "- revision: {}", record.revision);
+    _ = writeln!(text, "- revision: {}", built(&record.version, &record.revision));
     _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
     _ = writeln!(text, "- compiler: {}; {}", record.compiler, record.flags);
     _ = writeln!(text, "- seed: {}", record.seed);

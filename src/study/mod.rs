@@ -26,15 +26,17 @@ use crate::measure::environment;
 use crate::measure::errors::Truth;
 use crate::measure::observer::Observer;
 use crate::measure::plan::Budget;
-use crate::measure::reference::Reference;
+use crate::measure::reference::{Reference, scene_hash};
 use crate::measure::target::Target;
-use crate::record::Machine;
 use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
 use crate::record::study_store::StudyWriter;
+use crate::record::{Machine, ResultFolder};
+use crate::report;
+use crate::scene::Scene;
 use crate::scene::file::Overrides;
 use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured, STRATEGIES};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use trial::{Budgets, Trial, Tried};
 
 /// Every study, in the order of `citylights list studies`.
@@ -81,6 +83,29 @@ pub struct Options {
     pub cache: PathBuf,
 }
 
+impl Options {
+    /// All of it that decides a study's cells, and the scenes' content.
+    fn plan<'s>(&self, scenes: impl IntoIterator<Item = &'s Scene>) -> String {
+        let Self { overrides, strategies, receivers, pixels, passes, seconds, repeats, max_lights, seed, .. } = self;
+        let scenes = scenes.into_iter().map(|scene| format!(" {}={}", scene.name(), scene_hash(scene)));
+        format!(
+            "scenes{}; {overrides:?}; strategies {}; {receivers} receivers, {pixels:?} pixels; {passes} passes, {seconds} s; \
+             {repeats} runs; at most {max_lights} lights; seed {seed}",
+            scenes.collect::<String>(),
+            strategies.as_deref().unwrap_or("its own"),
+        )
+    }
+}
+
+/// Refuses scenes of one name: their rows could not be told apart.
+fn told_apart(scenes: &[Scene]) -> Result<()> {
+    let twice =
+        scenes.iter().enumerate().find(|(i, scene)| scenes[..*i].iter().any(|other| other.name() == scene.name()));
+    twice.map_or(Ok(()), |(_, scene)| {
+        Err(Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", scene.name())))
+    })
+}
+
 /// The study of that name.
 pub fn find(name: &str) -> Result<Entry> {
     let unknown = || Error::Unknown {
@@ -94,13 +119,13 @@ pub fn find(name: &str) -> Result<Entry> {
 impl Entry {
     /// Runs the study; `command` is what was typed.
     ///
-    /// `folder` makes the folder that it is recorded in, which must hold no study yet; it is called once all that was
-    /// asked for has been read, so that a misspelt name leaves nothing behind.
+    /// `folder` opens the folder that it is recorded in, which holds nothing yet or the same study, interrupted; it is
+    /// called once all that was asked for has been read, so that a misspelt name leaves nothing behind.
     pub fn run(
         &self,
         options: &Options,
         command: String,
-        folder: &dyn Fn() -> Result<PathBuf>,
+        folder: &dyn Fn() -> Result<ResultFolder>,
         watch: &dyn Observer,
     ) -> Result<Study> {
         (self.run)(&Session { entry: *self, options, command, folder, watch, clock: Cpu::new() })
@@ -112,7 +137,7 @@ struct Session<'a> {
     entry: Entry,
     options: &'a Options,
     command: String,
-    folder: &'a dyn Fn() -> Result<PathBuf>,
+    folder: &'a dyn Fn() -> Result<ResultFolder>,
     watch: &'a dyn Observer,
     /// From when the study began.
     clock: Cpu,
@@ -138,14 +163,17 @@ impl Session<'_> {
         Engine { clock: &self.clock, workers: self.options.threads, seed: self.options.seed }
     }
 
-    /// Opens the study's tables.
-    fn open(&self, tables: Vec<TableRecord>) -> Result<StudyWriter> {
+    /// Opens the study's tables, filled as far as an interrupted study came; `scenes` are those that their cells depend
+    /// on, beside what the study makes itself.
+    fn open<'s>(&self, scenes: impl IntoIterator<Item = &'s Scene>, tables: Vec<TableRecord>) -> Result<StudyWriter> {
         let record = StudyRecord {
             schema: STUDY_SCHEMA,
             study: self.entry.name.to_owned(),
             question: self.entry.question.to_owned(),
             command: self.command.clone(),
+            plan: self.options.plan(scenes),
             date: environment::date(),
+            version: environment::version(),
             revision: environment::revision(),
             seed: self.options.seed,
             machine: Machine { cpu: environment::cpu(), cores: environment::cores(), os: environment::os() },
@@ -158,12 +186,13 @@ impl Session<'_> {
             tables,
             pictures: Vec::new(),
         };
-        StudyWriter::create(&(self.folder)()?, record)
+        StudyWriter::open((self.folder)()?, record)
     }
 
-    /// Ends the study.
+    /// Ends the study: page and plots first, then the word that it is finished.
     fn finish(&self, writer: StudyWriter) -> Result<Study> {
-        writer.finish(self.clock.wall_s())
+        let derive = |folder: &Path, study: &Study| report::write(folder, &report::derive_study(study)?);
+        writer.finish(self.clock.wall_s(), derive)
     }
 
     /// How many receivers errors are taken at: what was asked for, or the study's `own`.

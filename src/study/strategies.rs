@@ -8,9 +8,9 @@ use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
 use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session};
+use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
-use crate::measure::figure::{CONFIDENCE, Figure};
+use crate::measure::figure::Figure;
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
 use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
@@ -61,7 +61,9 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
         files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
-    let mut writer = session.open(scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
+    told_apart(&scenes)?;
+    let mut writer =
+        session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
         by_probability(session, &mut writer, scene.clone(), &strategies)?;
         by_measuring(session, &mut writer, scene, &strategies)?;
@@ -172,15 +174,20 @@ fn by_probability(
     let mut unknown = Vec::new();
     for strategy in strategies.iter().filter(|strategy| blank(strategy).claim != Claim::Oracle) {
         session.watch.check()?;
+        let key = [("strategy", strategy.name().into())];
+        if writer.has(&table, &key, 1) {
+            session.watch.advance(1);
+            continue;
+        }
         let built = strategy.build(BuildContext { stage: &stage, seed: session.options.seed });
         match built.map(|sampler| qualities(&stage, sampler.as_ref(), &by_area.receivers)) {
             Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
-            Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
+            Ok(found) => writer.put(&table, &key, vec![quality_cells(strategy, &by_area, &found)])?,
             Err(error) => {
                 let mut row = vec![strategy.name().into(), claim(&blank(strategy))];
                 row.resize(quality_columns().len() - 1, Cell::Missing);
                 row.push(format!("failed: {error}").as_str().into());
-                writer.row(&table, row)?;
+                writer.put(&table, &key, vec![row])?;
             }
         }
         session.watch.advance(1);
@@ -205,7 +212,7 @@ fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> 
     };
     // Receivers are drawn independently.
     let mean = |of: fn(&Quality) -> f64, found: &[Finding]| {
-        cells(Figure::mean(known(found).iter().map(of).collect()).interval())
+        cells(Figure::signed_mean(known(found).iter().map(of).collect()).interval())
     };
     let (street, facade) = found.split_at(by_area.streets);
     let all = known(found);
@@ -234,10 +241,21 @@ fn by_measuring(
     strategies: &[Configured],
 ) -> Result<()> {
     let table = measured_table(&scene);
+    if writer.has(&table, &[], strategies.len()) {
+        return Ok(());
+    }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let target = Target::whole(&stage).thinned(session.pixels(PIXELS));
     let reference = session.reference(&target)?;
+    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
+    writer.note(format!(
+        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
+        stage.scene().name(),
+        stage.scene().lights().len(),
+        stage.lights().len()
+    ))?;
     let found = session.trial(&target, &reference.truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let mut rows = Vec::new();
     let of = |strategy: &str| found.iter().find(|one| one.summary.strategy == strategy);
     let (oracle, intensity) = (of("oracle"), of("intensity"));
     for one in &found {
@@ -253,16 +271,9 @@ fn by_measuring(
         row.extend(cells(one.error_cpu_s().map(|figure| figure.interval())));
         row.extend(cells(one.ratio(intensity, Tried::error_cpu_s)));
         row.push(remark(summary));
-        writer.row(&table, row)?;
+        rows.push(row);
     }
-    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
-    writer.note(format!(
-        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
-        stage.scene().name(),
-        stage.scene().lights().len(),
-        stage.lights().len()
-    ));
-    Ok(())
+    writer.put(&table, &[], rows)
 }
 
 impl Tried {
@@ -287,7 +298,7 @@ impl Tried {
     fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<Figure>) -> Option<Interval> {
         let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
         let (own, other) = (figure(self)?, figure(to)?);
-        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other, CONFIDENCE) }
+        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other) }
     }
 }
 

@@ -11,7 +11,7 @@ use super::{Entry, Session};
 use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::base::triangle::uniform_point;
-use crate::record::study::{Cell, Format, Study, TableRecord};
+use crate::record::study::{Cell, Cells, Format, Study, TableRecord};
 use crate::scene::Scene;
 use crate::scene::light::{Kind, Light};
 use crate::scene::light_sampling::LightSampling;
@@ -41,28 +41,66 @@ const POLICIES: [(&str, Offset); 4] = Offset::NAMED;
 const MOST_DOUBLINGS: u32 = 20;
 
 fn run(session: &Session<'_>) -> Result<Study> {
-    let mut writer = session.open(vec![counts_table(), totals_table(), starts_table()])?;
+    let mut writer = session.open([], vec![counts_table(), totals_table(), starts_table()])?;
     let (count, seed) = (session.options.receivers, session.options.seed);
     let measure = |geometry: Geometry, distance: u32| -> Result<[Counts; POLICIES.len()]> {
         session.watch.check()?;
         counts(&geometry.baked(f64::from(distance))?, count, seed)
     };
     for distance in DISTANCES {
+        let key = [("distance_m", u64::from(distance).into())];
+        if writer.has("counts", &key, Geometry::ALL.len() * POLICIES.len())
+            && writer.has("totals", &key, POLICIES.len())
+        {
+            continue;
+        }
+        let mut rows = Vec::new();
         let mut totals = [Counts::default(); POLICIES.len()];
         for geometry in Geometry::ALL {
             let found = measure(geometry, distance)?;
             for (policy, (found, total)) in found.into_iter().zip(&mut totals).enumerate() {
                 *total += found;
                 let start = [Cell::from(u64::from(distance)), geometry.name().into(), POLICIES[policy].0.into()];
-                writer.row("counts", start.into_iter().chain(found.cells()).collect())?;
+                rows.push(start.into_iter().chain(found.cells()).collect());
             }
         }
-        for ((policy, _), total) in POLICIES.iter().zip(totals) {
+        writer.put("counts", &key, rows)?;
+        let total = |((policy, _), total): (&(&str, Offset), Counts)| {
             let start = [Cell::from(u64::from(distance)), (*policy).into()];
-            writer.row("totals", start.into_iter().chain(total.cells()).collect())?;
-        }
+            start.into_iter().chain(total.cells()).collect()
+        };
+        writer.put("totals", &key, POLICIES.iter().zip(totals).map(total).collect())?;
     }
-    // For each policy, geometry and kind of failure: the first power of two that shows it.
+    if !writer.has("starts", &[], POLICIES.len()) {
+        writer.put("starts", &[], starts(measure)?)?;
+    }
+    writer.note(format!(
+        "Geometry: flat is a slope of 32 triangles with a box over it, under lamps, panels and the moon; grazing is that slope with \
+         kerbs, and lamps and panels 3 to 80 cm above it; concave is a corner of thin walls with stairs and a lean-to of 15 degrees, lamps \
+         and panels inside and, from 2 cm on, behind the walls. {count} receivers on all surfaces, half of them near edges, \
+         one ray to each light that is not behind."
+    ))?;
+    writer.note(
+        "Distance: what is added to every coordinate, in f64, before it is rounded to f32. The f64 tracer takes the rounded numbers, the \
+         receiver's too, and starts at the place on the receiver's own triangle that its rounded position stands for."
+            .into(),
+    )?;
+    writer.note(
+        "Acne: f64 sees the light, with the receiver's and the light's own triangles left out, and the policy does not. Leak: f64 sees \
+         an occluder, and the policy sees the light."
+            .into(),
+    )?;
+    writer.note(
+        "Undecided, and counted apart: rays whose answer in f64 hangs on less than 0.1 mm and four units in the last place of the \
+         greatest coordinate (2^-21 of it: 5 mm at 10 km), as they pass an edge, begin or end beside a triangle, or run along the horizon. It \
+         is the farthest from its place that a ray of the default policy may start."
+            .into(),
+    )?;
+    session.finish(writer)
+}
+
+/// For each policy, and each geometry and kind of failure, the first power of two that shows it.
+fn starts(measure: impl Fn(Geometry, u32) -> Result<[Counts; POLICIES.len()]>) -> Result<Vec<Cells>> {
     let mut starts = [[[None; 2]; Geometry::ALL.len()]; POLICIES.len()];
     for distance in (0..=MOST_DOUBLINGS).map(|power| 1 << power) {
         for (place, geometry) in Geometry::ALL.into_iter().enumerate() {
@@ -75,33 +113,10 @@ fn run(session: &Session<'_>) -> Result<Study> {
             }
         }
     }
-    for ((policy, _), starts) in POLICIES.iter().zip(starts) {
-        let first = starts.into_iter().flatten().map(Cell::from);
-        writer.row("starts", [Cell::from(*policy)].into_iter().chain(first).collect())?;
-    }
-    writer.note(format!(
-        "Geometry: flat is a slope of 32 triangles with a box over it, under lamps, panels and the moon; grazing is that slope with \
-         kerbs, and lamps and panels 3 to 80 cm above it; concave is a corner of thin walls with stairs and a lean-to of 15 degrees, lamps \
-         and panels inside and, from 2 cm on, behind the walls. {count} receivers on all surfaces, half of them near edges, \
-         one ray to each light that is not behind."
-    ));
-    writer.note(
-        "Distance: what is added to every coordinate, in f64, before it is rounded to f32. The f64 tracer takes the rounded numbers, the \
-         receiver's too, and starts at the place on the receiver's own triangle that its rounded position stands for."
-            .into(),
-    );
-    writer.note(
-        "Acne: f64 sees the light, with the receiver's and the light's own triangles left out, and the policy does not. Leak: f64 sees \
-         an occluder, and the policy sees the light."
-            .into(),
-    );
-    writer.note(
-        "Undecided, and counted apart: rays whose answer in f64 hangs on less than 0.1 mm and four units in the last place of the \
-         greatest coordinate (2^-21 of it: 5 mm at 10 km), as they pass an edge, begin or end beside a triangle, or run along the horizon. It \
-         is the farthest from its place that a ray of the default policy may start."
-            .into(),
-    );
-    session.finish(writer)
+    let row = |((policy, _), starts): (&(&str, Offset), [[Option<u64>; 2]; Geometry::ALL.len()])| {
+        std::iter::once((*policy).into()).chain(starts.into_iter().flatten().map(Cell::from)).collect()
+    };
+    Ok(POLICIES.iter().zip(starts).map(row).collect())
 }
 
 fn columns_of_counts() -> Vec<crate::record::study::ColumnRecord> {

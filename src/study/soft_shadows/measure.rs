@@ -5,10 +5,11 @@
 use super::super::Session;
 use super::super::trial::of_means;
 use crate::base::error::{Error, Result};
+use crate::base::interval::Tail;
 use crate::base::random::RunKey;
 use crate::measure::engine::sample;
 use crate::measure::errors::{Errors, Truth};
-use crate::measure::figure::{CONFIDENCE, Figure};
+use crate::measure::figure::Figure;
 use crate::record::Interval;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
@@ -40,7 +41,7 @@ pub(super) struct Measured {
 impl Measured {
     fn of(runs: Vec<(Errors, f64)>, rays: f64) -> Self {
         let mean = |value: fn(&(Errors, f64)) -> f64| Figure::mean(runs.iter().map(value).collect()).interval();
-        Self { rel_mse: mean(|run| run.0.rel_mse), cpu_s: mean(|run| run.1), rays, runs }
+        Self { rel_mse: Self::error(&runs, |errors| errors.rel_mse).interval(), cpu_s: mean(|run| run.1), rays, runs }
     }
 
     /// Mean squared error in (cd/m^2)^2.
@@ -53,17 +54,29 @@ impl Measured {
         if std::ptr::eq(self, other) {
             return Some(Interval::certain(1.0));
         }
-        self.mse_figure().over(&other.mse_figure(), CONFIDENCE)
+        self.mse_figure().over(&other.mse_figure())
     }
 
     fn mse_figure(&self) -> Figure {
-        Figure::mean(self.runs.iter().map(|run| run.0.mse).collect())
+        Self::error(&self.runs, |errors| errors.mse)
+    }
+
+    /// A mean error, with the tail of relMSE in its unit.
+    fn error(runs: &[(Errors, f64)], of: fn(&Errors) -> f64) -> Figure {
+        let values: Vec<f64> = runs.iter().map(|(errors, _)| of(errors)).collect();
+        let scale = values.iter().sum::<f64>() / runs.iter().map(|(errors, _)| errors.rel_mse).sum::<f64>();
+        Figure::error(values, Self::tail(runs).times(scale))
+    }
+
+    fn tail(runs: &[(Errors, f64)]) -> Tail {
+        let (errors, largest): (Vec<f64>, Vec<_>) = runs.iter().map(|(e, _)| (e.rel_mse, e.largest)).unzip();
+        Tail::of(&errors, &largest)
     }
 
     /// relMSE x CPU seconds at a receiver.
     pub(super) fn cost_s(&self) -> Interval {
         let (errors, seconds) = self.runs.iter().map(|(errors, seconds)| (errors.rel_mse, *seconds)).unzip();
-        of_means([errors, seconds], |[error, seconds]| error * seconds).interval()
+        of_means([errors, seconds], Self::tail(&self.runs), |[error, seconds]| error * seconds).interval()
     }
 }
 

@@ -18,13 +18,8 @@ pub(super) const ENTRY: Entry = Entry {
 };
 
 fn run(session: &Session<'_>) -> Result<Study> {
-    let mut writer = session.open(vec![
-        rays::table(session),
-        rays::laws(),
-        shares::table(session),
-        ways::table(),
-        ways::by_size(),
-    ])?;
+    let mut writer = session
+        .open([], vec![rays::table(session), rays::laws(), shares::table(session), ways::table(), ways::by_size()])?;
     rays::run(session, &mut writer)?;
     shares::run(session, &mut writer)?;
     ways::run(session, &mut writer)?;
