@@ -3,7 +3,8 @@
 
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Kind, Machine, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+    Claim, Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord,
+    SCHEMA, SceneRecord, SharedWork, Summary,
 };
 use citylights::report::{self, Drift, splice};
 use std::fs;
@@ -23,18 +24,18 @@ const RUNS: u32 = 4;
 
 impl Maker {
     fn passes(&self) -> u32 {
-        // Budgets double to about two seconds.
-        1 << (2.0 / self.pass_s).log2().max(0.0) as u32
+        // Powers of 4 up to about two seconds.
+        1 << (2 * ((2.0 / self.pass_s).log2().max(0.0) as u32 / 2))
     }
 
     /// Runs scatter by a factor that depends on the run and the budget, with mean 1.
     fn error(&self, run: u32, passes: u32) -> f64 {
-        let scatter = [0.93, 1.05, 1.09, 0.93][((run + passes.ilog2()) % 4) as usize];
+        let scatter = [0.93, 1.05, 1.09, 0.93][run as usize];
         self.bias2 + scatter * self.v / (f64::from(passes) * self.pass_s)
     }
 
     fn rows(&self) -> impl Iterator<Item = Row> {
-        let budgets = (0..).map(|n| 1u32 << n).take_while(|&passes| passes <= self.passes());
+        let budgets = (0..).map(|n| 1u32 << (2 * n)).take_while(|&passes| passes <= self.passes());
         budgets.flat_map(|passes| (0..RUNS).map(move |run| (passes, run))).map(|(passes, run)| {
             let error = self.error(run, passes);
             Row {
@@ -57,28 +58,75 @@ impl Maker {
         })
     }
 
-    fn summary(&self) -> Summary {
-        let rows: Vec<Row> = self.rows().filter(|r| r.passes == self.passes()).collect();
+    fn point(&self, passes: u32) -> Point {
+        let rows: Vec<Row> = self.rows().filter(|r| r.passes == passes).collect();
         let mean = rows.iter().map(|r| r.rel_mse).sum::<f64>() / f64::from(RUNS);
+        let rel_mse = around(mean, 0.12);
+        Point { passes, cpu_s: around(self.setup_s + f64::from(passes) * self.pass_s, 0.02), rel_mse }
+    }
+
+    /// When the law above reaches an error.
+    fn seconds_to(&self, error: f64) -> Reading {
+        let of_noise = self.v / (error - self.bias2);
+        let (first, last) = (self.pass_s, f64::from(self.passes()) * self.pass_s);
+        let (how, value) = match of_noise {
+            _ if error <= self.bias2 => (Read::Never, Interval::NONE),
+            t if t <= first => (Read::Measured, around(self.setup_s + first, 0.02)),
+            t if t <= last => (Read::Measured, around(self.setup_s + t, 0.13)),
+            t => (Read::Extrapolated, around(self.setup_s + t, 0.2)),
+        };
+        Reading { at: error, value, how }
+    }
+
+    fn error_at(&self, seconds: f64) -> Reading {
+        let sampling = seconds - self.setup_s;
+        let how = match sampling {
+            t if t < self.pass_s => Read::TooSoon,
+            t if t <= f64::from(self.passes()) * self.pass_s => Read::Measured,
+            _ => Read::Extrapolated,
+        };
+        let value = if how == Read::TooSoon { Interval::NONE } else { around(self.bias2 + self.v / sampling, 0.1) };
+        Reading { at: seconds, value, how }
+    }
+
+    fn summary(&self) -> Summary {
         let picks = 20_000 * u64::from(self.passes());
+        let curve: Vec<Point> = (0..)
+            .map(|n| 1u32 << (2 * n))
+            .take_while(|&passes| passes <= self.passes())
+            .map(|passes| self.point(passes))
+            .collect();
+        let rel_mse = curve.last().expect("a budget").rel_mse;
+        let cpu_s = f64::from(self.passes()) * self.pass_s;
+        let mean_bias = Interval::symmetric(-0.1 * self.bias2.abs().sqrt(), 0.000_42);
+        let is_unbiased = self.claim == Claim::Unbiased;
         Summary {
-            strategy: self.strategy.to_owned(),
-            claim: self.claim.clone(),
-            chooses: !matches!(self.claim, Claim::Floor | Claim::Ceiling),
             runs: RUNS,
             passes: self.passes(),
-            setup_cpu_s: self.setup_s,
-            cpu_s: rows[0].cpu_s,
-            wall_s: rows[0].wall_s,
+            curve,
+            setup_cpu_s: around(self.setup_s, 0.05),
+            arrival_cpu_s: Interval::symmetric(0.1 * self.pass_s, 0.02 * self.pass_s),
+            pass_cpu_s: around(self.pass_s, 0.01),
+            cpu_s: around(cpu_s, 0.02),
+            wall_s: 1.1 * cpu_s,
             heap_bytes: 123_456,
-            rel_mse: Interval { mean, half_width: 0.12 * mean },
-            mse: Interval { mean: 40.0 * mean, half_width: 4.8 * mean },
-            rel_mse_trimmed: Interval { mean: 0.8 * mean, half_width: 0.05 * mean },
-            rel_bias2: Interval { mean: self.bias2, half_width: 3e-5 },
-            mean_bias: Interval { mean: -0.1 * self.bias2.abs().sqrt(), half_width: 0.000_42 },
+            rel_mse,
+            mse: rel_mse.times(40.0),
+            rel_mse_trimmed: Interval::symmetric(0.8 * rel_mse.mean, 0.05 * rel_mse.mean),
+            rel_bias2: Interval::symmetric(self.bias2, 3e-5),
+            mean_bias,
+            simultaneous_bias: if is_unbiased { Interval::symmetric(mean_bias.mean, 0.001) } else { Interval::NONE },
             detectable_bias: 0.000_61,
-            variance_seconds: self.v,
-            times_oracle: (self.claim == Claim::Unbiased).then_some(10.0 * self.v),
+            variance_seconds: around(self.v, 0.16),
+            balance_s: self.claim.may_be_biased().then(|| match self.bias2 > 3e-5 {
+                true => around(self.v / self.bias2, 0.3),
+                false => Interval { mean: f64::INFINITY, low: cpu_s, high: f64::INFINITY },
+            }),
+            seconds_to: [0.1, 0.01, 0.001].map(|error| self.seconds_to(error)).to_vec(),
+            error_at: [0.03, 0.3, 1.0].map(|seconds| self.error_at(seconds)).to_vec(),
+            rank: None,
+            letters: String::new(),
+            times_oracle: is_unbiased.then(|| around(10.0 * self.v, 0.11)),
             receivers: None,
             counts: Counts {
                 samples: picks,
@@ -96,8 +144,18 @@ impl Maker {
             unstable: self.strategy == "uniform",
             skipped: None,
             error: None,
+            ..Summary::blank(self.strategy.to_owned(), self.claim.clone(), self.chooses())
         }
     }
+
+    fn chooses(&self) -> bool {
+        !matches!(self.claim, Claim::Floor | Claim::Ceiling)
+    }
+}
+
+/// With an interval that reaches a share of it down, and farther up.
+fn around(mean: f64, share: f64) -> Interval {
+    Interval { mean, low: mean * (1.0 - share), high: mean * (1.0 + share * (1.0 + share)) }
 }
 
 fn makers() -> Vec<Maker> {
@@ -116,31 +174,19 @@ fn makers() -> Vec<Maker> {
 }
 
 fn skipped(strategy: &str) -> Summary {
-    let nothing = Maker { strategy: "", claim: Claim::Unbiased, setup_s: 0.0, pass_s: 1.0, v: f64::NAN, bias2: 0.0 };
-    let skipped = Some("skipped: about 40 s".to_owned());
-    Summary { strategy: strategy.to_owned(), passes: 1, skipped, unstable: false, ..nothing.summary() }
+    let skipped = Some("skipped: one pass is 40.00 s of counted work".to_owned());
+    Summary { skipped, ..Summary::blank(strategy.to_owned(), Claim::Unbiased, true) }
 }
 
 /// Not timed, on a few receivers.
 fn oracle() -> Summary {
-    let none = Interval { mean: f64::NAN, half_width: f64::NAN };
     let samples = 1_024;
     Summary {
-        claim: Claim::Oracle,
-        chooses: false,
-        runs: 4,
+        runs: 24,
         passes: 64,
-        setup_cpu_s: f64::NAN,
-        cpu_s: f64::NAN,
-        wall_s: f64::NAN,
-        rel_mse: Interval { mean: 0.012, half_width: 0.001 },
-        mse: none,
-        rel_mse_trimmed: none,
-        rel_bias2: none,
-        mean_bias: none,
-        detectable_bias: f64::NAN,
-        times_oracle: Some(1.0),
-        receivers: Some(256),
+        rel_mse: around(0.012, 0.08),
+        times_oracle: Some(Interval::certain(1.0)),
+        receivers: Some(4_096),
         counts: Counts {
             samples,
             picks: samples,
@@ -148,8 +194,7 @@ fn oracle() -> Summary {
             choosing_rays: 12_345,
             ..Counts::default()
         },
-        skipped: None,
-        ..skipped("oracle")
+        ..Summary::blank("oracle".to_owned(), Claim::Oracle, false)
     }
 }
 
@@ -158,8 +203,14 @@ fn record() -> (RunRecord, Vec<Row>) {
     let failure = "a light that contributes is never chosen: light 17, p = 0.0001".to_owned();
     rows.push(Row::failed("village".to_owned(), "broken".to_owned(), 0, 1, failure.clone()));
     let mut summaries: Vec<Summary> = makers().iter().map(Maker::summary).collect();
+    for (name, rank, letters) in [("light-tree", [1, 1], "a"), ("power", [2, 3], "b"), ("uniform", [2, 3], "b")] {
+        let summary = summaries.iter_mut().find(|s| s.strategy.starts_with(name)).expect("there");
+        (summary.rank, summary.letters) = (Some(rank), letters.to_owned());
+    }
     summaries.push(skipped("lightcuts:error=0.02"));
-    summaries.push(Summary { skipped: None, error: Some(failure), ..skipped("broken") });
+    // It failed after its runs: its figures are there, and say nothing.
+    let broken = makers().into_iter().find(|maker| maker.strategy == "power").expect("there").summary();
+    summaries.push(Summary { strategy: "broken".to_owned(), error: Some(failure), ..broken });
     summaries.push(oracle());
     let scene = SceneRecord {
         name: "village".to_owned(),
@@ -183,6 +234,10 @@ fn record() -> (RunRecord, Vec<Row>) {
             cached: true,
             subset: false,
         },
+        shared: vec![SharedWork { what: "occluders".to_owned(), cpu_s: 0.031 }],
+        errors: vec![0.1, 0.01, 0.001],
+        times_s: vec![0.03, 0.3, 1.0],
+        ranked_by: 1,
         notes: vec!["exposure 1: the scene states none".to_owned()],
         summaries,
     };
@@ -236,7 +291,7 @@ fn a_section_holds_the_answer_and_where_it_came_from() {
     for part in [
         "## village\n",
         "](2026-11-22-village-67eec73/village.svg)",
-        "| `power` | unbiased | 3.10 |",
+        "| `power` | unbiased | 2-3 | b | ~31 -20 +24 % |",
         "Made by `citylights compare scenes/village.toml --repeats 4` (2026-11-22, revision 67eec73,",
         "- **not finished: some strategies or runs are missing**",
         "- **the best error is only 29 times the reference's own",
@@ -253,64 +308,109 @@ fn cells(run: &RunRecord, rows: &[Row], strategy: &str) -> Vec<String> {
     line.split(" | ").skip(1).map(|cell| cell.trim_end_matches(" |").to_owned()).collect()
 }
 
-const TO_TENTH: usize = 2;
-const TO_HUNDREDTH: usize = 3;
-const BALANCE: usize = 7;
+/// Where a column stands among [`cells`].
+const RANK: usize = 1;
+const TO_TENTH: usize = 3;
+const TO_HUNDREDTH: usize = 4;
+const AT_FIRST: usize = 6;
+const V: usize = 9;
 
-#[test]
-fn the_time_to_an_error_is_read_off_the_measured_curve() {
-    let (run, mut rows) = record();
-    // Errors of 0.4, 0.1, 0.025 at 1.5, 3, 6 s: V / 0.1 would be 0.25 s, less than one pass.
-    rows.retain(|row| row.strategy != "power" || row.passes <= 4);
-    for row in rows.iter_mut().filter(|row| row.strategy == "power") {
-        let nth = row.passes.ilog2() as i32;
-        (row.setup_cpu_s, row.cpu_s, row.rel_mse) = (0.5, [1.0, 2.5, 5.5][nth as usize], 0.4 * 0.25f64.powi(nth));
-    }
-    let times = |rows: &[Row]| {
-        let cells = cells(&run, rows, "power");
-        [cells[TO_TENTH].clone(), cells[TO_HUNDREDTH].clone()]
-    };
-    // Beyond the last budget: 0.5 + 5.5 * 0.025 / 0.01.
-    assert_eq!(times(&rows), ["3.00", "~14.2"]);
-    // 0.1 lies half-way between 0.4 and 0.025, the time half-way between 1.5 and 6.
-    rows.retain(|row| row.strategy != "power" || row.passes != 2);
-    assert_eq!(times(&rows), ["3.00", "~14.2"]);
-    rows.retain(|row| row.strategy != "power" || row.passes == 4);
-    assert_eq!(times(&rows), ["6.00", "~14.2"], "nothing is sooner than the first budget");
-    rows.retain(|row| row.strategy != "power");
-    assert_eq!(times(&rows), ["–", "–"]);
+/// A changed summary of `strategy`.
+fn of<'a>(run: &'a mut RunRecord, strategy: &str) -> &'a mut Summary {
+    run.scenes[0].summaries.iter_mut().find(|s| s.strategy == strategy).expect("there")
 }
 
 #[test]
-fn a_bias_bounds_what_is_extrapolated() {
-    let (mut run, mut rows) = record();
-    let name = "range:cutoff=0.5";
-    // Bias 0.005, noise 0.095 at 1 s: 0.01 takes 0.5 + 1 * 0.095 / 0.005.
-    rows.retain(|row| row.strategy != name || row.passes == 1);
-    for row in rows.iter_mut().filter(|row| row.strategy == name) {
-        (row.setup_cpu_s, row.cpu_s, row.rel_mse) = (0.5, 1.0, 0.1);
-    }
-    let mut at = |mean: f64| {
-        let summary = run.scenes[0].summaries.iter_mut().find(|s| s.strategy == name).expect("there");
-        summary.rel_bias2 = Interval { mean, half_width: 0.001 };
-        cells(&run, &rows, name)[TO_HUNDREDTH].clone()
+fn readings_say_how_they_were_found() {
+    let (mut run, rows) = record();
+    let mut shown = |how: Read, value: Interval| {
+        of(&mut run, "power").seconds_to[0] = Reading { at: 0.1, value, how };
+        of(&mut run, "power").error_at[0] = Reading { at: 0.03, value, how };
+        let cells = cells(&run, &rows, "power");
+        [cells[TO_TENTH].clone(), cells[AT_FIRST].clone()]
     };
-    assert_eq!([0.005, 0.01, -0.005, f64::NAN].map(&mut at), ["~19.5", "never", "~10.5", "–"]);
+    assert_eq!(shown(Read::Measured, Interval::symmetric(3.0, 0.3)), ["3.00 ±10 %"; 2]);
+    assert_eq!(shown(Read::Extrapolated, Interval { mean: 3.0, low: 2.4, high: 4.2 }), ["~3.0 -20 +40 %"; 2]);
+    assert_eq!(shown(Read::Never, Interval::NONE), ["never"; 2]);
+    assert_eq!(shown(Read::TooSoon, Interval::NONE), ["none yet"; 2]);
+    assert_eq!(shown(Read::Unknown, Interval::NONE), ["–"; 2]);
+    assert_eq!(shown(Read::Measured, Interval::certain(0.0)), ["0", "exact"]);
+}
+
+#[test]
+fn an_interval_without_an_upper_end_is_a_bound_and_explained() {
+    let (mut run, rows) = record();
+    let explained = |run: &RunRecord| report::table(run, &run.scenes[0], &rows).matches(" †: too heavy a tail").count();
+    assert_eq!(explained(&run), 0);
+    of(&mut run, "power").variance_seconds = Interval { mean: 3.1, low: 2.178, high: f64::INFINITY };
+    assert_eq!(cells(&run, &rows, "power")[V], ">2.1 †");
+    assert_eq!(explained(&run), 1, "under the one table that has the mark");
+    of(&mut run, "power").variance_seconds = Interval { mean: 3.1, low: f64::NEG_INFINITY, high: f64::INFINITY };
+    assert_eq!(cells(&run, &rows, "power")[V], "3.10 ±?");
+    assert!(report::table(&run, &run.scenes[0], &rows).contains(" ±?: too few runs"));
+}
+
+#[test]
+fn what_failed_has_no_figures_and_is_named_once_more_in_a_warning() {
+    let (run, rows) = record();
+    let cells = cells(&run, &rows, "broken`<br>failed, see below");
+    assert!(cells.iter().all(String::is_empty) && cells.len() > V, "{cells:?}");
+    let table = report::table(&run, &run.scenes[0], &rows);
+    assert_eq!(
+        table.matches("`broken` failed: a light that contributes is never chosen: light 17, p = 0.0001.").count(),
+        1
+    );
+    assert!(table.contains("  warning: failed, without figures or rank: `broken`\n"), "{table}");
+    assert_eq!(table.matches("broken").count(), 3, "it stands in no other table\n{table}");
+    assert!(table.contains(" `lightcuts:error=0.02` skipped: one pass is 40.00 s of counted work.\n"), "{table}");
+    assert!(!report::plot(&run.scenes[0]).expect("drawn").contains("broken"));
+}
+
+#[test]
+fn rows_stand_by_the_error_that_ranks() {
+    let (mut run, rows) = record();
+    let order = |run: &RunRecord| {
+        let section = report::section(run, &run.scenes[0], &rows, "village.svg");
+        let names = section.lines().filter_map(|line| line.strip_prefix("| `")?.split(['`', ':']).next());
+        names.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let others = ["broken", "lightcuts", "range", "reservoir", "range", "null", "all", "oracle"];
+    assert_eq!(order(&run)[..3], ["light-tree", "power", "uniform"]);
+    assert_eq!(order(&run)[3..], others);
+    assert_eq!(cells(&run, &rows, "power")[RANK], "2-3");
+    let last = Reading { at: 0.01, value: Interval::NONE, how: Read::Unknown };
+    of(&mut run, "power").seconds_to[1] = last;
+    of(&mut run, "power").rank = None;
+    assert_eq!(order(&run)[..3], ["light-tree", "uniform", "power"]);
+    assert_eq!(cells(&run, &rows, "power")[RANK], "–");
+    // By 0.1 `power` is sooner again.
+    run.scenes[0].ranked_by = 0;
+    assert_eq!(order(&run)[..3], ["light-tree", "power", "uniform"]);
+    assert!(report::page(&run, &run.scenes[0], &rows, "village.svg").contains("| s to<br>▲0.1 | s to<br>0.01 |"));
 }
 
 #[test]
 fn a_bias_that_may_be_zero_has_no_balance() {
+    let (run, rows) = record();
+    let page = report::page(&run, &run.scenes[0], &rows, "village.svg");
+    let bias = page.split("## Bias\n").nth(1).expect("a table");
+    let line = |name: &str| bias.lines().find(|line| line.starts_with(&format!("| `{name}"))).expect("a row");
+    assert!(line("range:cutoff=0.5").contains("| 0.0130 ±0.2 % | 9.2 -30 +39 % | -1.140 ±0.042 | – |"));
+    assert!(line("reservoir").contains("| -2e-6 ±3.0e-5 | > 1.92 |"), "{}", line("reservoir"));
+    assert!(line("power").contains("| – | – | +0.000 ±0.042 | +0.00 ±0.10 |"), "{}", line("power"));
+}
+
+#[test]
+fn what_errors_are_taken_at_and_what_is_off_the_clock_is_said() {
     let (mut run, rows) = record();
-    let name = "range:cutoff=0.5";
-    let mut at = |mean: f64, half_width: f64| {
-        let summary = run.scenes[0].summaries.iter_mut().find(|s| s.strategy == name).expect("there");
-        summary.rel_bias2 = Interval { mean, half_width };
-        cells(&run, &rows, name)[BALANCE].clone()
-    };
-    assert_eq!(at(0.013, 0.012), "9.23");
-    assert_eq!(at(0.013, 0.014), "> 1.41");
-    assert_eq!(at(-0.013, 0.001), "> 1.41");
-    assert_eq!(at(f64::NAN, f64::INFINITY), "–");
+    let table = |run: &RunRecord| report::table(run, &run.scenes[0], &rows);
+    assert!(table(&run).contains("  off the clock, shared by all strategies: occluders 0.0310 s\n"));
+    assert!(!table(&run).contains("errors are taken at"));
+    run.scenes[0].pixels_measured = 2_000;
+    run.scenes[0].shared.clear();
+    assert!(
+        table(&run).contains("  errors are taken at 2,000 of the receivers") && !table(&run).contains("off the clock")
+    );
 }
 
 #[test]
@@ -326,7 +426,6 @@ fn of_rows_that_stand_twice_the_last_counts() {
     });
     let twice: Vec<Row> = wrong.chain(rows.iter().cloned()).collect();
     assert_eq!(report::page(&run, scene, &twice, "village.svg"), report::page(&run, scene, &rows, "village.svg"));
-    assert!(report::plot(scene, &twice).expect("drawn") == report::plot(scene, &rows).expect("drawn"));
 }
 
 #[test]
@@ -348,36 +447,12 @@ fn too_few_runs_to_see_a_large_bias_are_a_warning() {
 }
 
 #[test]
-fn biases_are_held_to_zero_by_intervals_for_the_whole_run() {
-    let line = |run: &RunRecord, rows: &[Row]| {
-        // A long note goes on in indented lines.
-        let table = report::table(run, &run.scenes[0], rows).replace("\n   ", " ");
-        table.lines().find(|line| line.contains("simultaneous")).map(str::to_owned).expect("a line")
-    };
-    let (mut run, rows) = record();
-    assert!(line(&run, &rows).contains("over the 3 unbiased rows of the run (Sidak): all 3 here contain 0"));
-    // Runs scatter by sqrt(0.00042^2 - 0.0001^2) / t(0.975, 3) = 0.000128; for 3 rows t is 8.6 and z 2.9: ±0.0011.
-    let mut at = |bias: f64| {
-        let summary = run.scenes[0].summaries.iter_mut().find(|s| s.strategy == "power").expect("there");
-        summary.mean_bias.mean = bias;
-        line(&run, &rows)
-    };
-    assert!(at(-0.001).contains("all 3 here"), "{}", at(-0.001));
-    let off = at(-0.001_3);
-    assert!(off.contains("of 3 here these do not contain 0: `power` -0.13 ±0.11."), "{off}");
-    // Twice as many rows, a wider interval.
-    let mut twice = run.clone();
-    twice.scenes.push(run.scenes[0].clone());
-    assert!(line(&twice, &rows).contains("over the 6 unbiased rows of the run (Sidak): all 3 here contain 0"));
-}
-
-#[test]
 fn columns_that_cannot_vary_are_left_out() {
     let (mut run, rows) = record();
     run.scenes[0].summaries.retain(|s| s.claim == Claim::Unbiased);
     run.scenes[0].summaries.iter_mut().for_each(|s| s.counts.blocked = 0);
     let table = report::table(&run, &run.scenes[0], &rows);
-    for absent in ["claim", "b²", "t*", "blocked", "dark direction", "behind light", "candidates"] {
+    for absent in ["claim", "b²", "t*,", "blocked", "dark direction", "behind light", "candidates"] {
         assert!(!table.contains(&format!("{absent} ")) && !table.contains(&format!("{absent}\n")), "{absent}\n{table}");
     }
     assert!(table.contains("behind surface"));
@@ -388,14 +463,14 @@ fn strategies_without_numbers_still_make_a_table_and_a_plot() {
     let (mut run, _) = record();
     run.scenes[0].summaries.retain(|s| s.error.is_some() || s.skipped.is_some());
     let table = report::table(&run, &run.scenes[0], &[]);
-    assert!(table.contains("skipped: about 40 s") && table.contains("failed: a light"), "{table}");
-    assert!(report::plot(&run.scenes[0], &[]).expect("drawn").contains("no points to draw"));
+    assert!(table.contains("skipped: one pass") && table.contains("failed: a light"), "{table}");
+    assert!(report::plot(&run.scenes[0]).expect("drawn").contains("no points to draw"));
 }
 
 #[test]
 fn the_plot_names_every_curve_and_what_it_leaves_out() {
     let (run, rows) = record();
-    let svg = report::plot(&run.scenes[0], &rows).expect("drawn");
+    let svg = report::plot(&run.scenes[0]).expect("drawn");
     for maker in makers() {
         let name = maker.strategy.split(':').next().expect("a name");
         assert!(svg.contains(&format!("{name}\n</text>")), "{name}");
@@ -404,21 +479,44 @@ fn the_plot_names_every_curve_and_what_it_leaves_out() {
     if let Some(path) = std::env::var_os("CITYLIGHTS_PLOT") {
         fs::write(path, &svg).expect("written");
     }
-    assert!(svg == report::plot(&run.scenes[0], &rows).expect("drawn"), "the same rows give the same bytes");
+    assert!(svg == report::plot(&run.scenes[0]).expect("drawn"), "the same rows give the same bytes");
 }
 
 #[test]
 fn a_plot_of_one_budget_and_one_run_is_drawn() {
-    let (run, rows) = record();
-    let one: Vec<Row> = rows.iter().filter(|r| r.strategy == "power" && r.run == 0 && r.passes == 1).cloned().collect();
-    let svg = report::plot(&run.scenes[0], &one).expect("drawn");
-    assert!(svg.contains("power") && !svg.contains("NaN") && !svg.contains("inf"));
+    let (mut run, _) = record();
+    let none = |mean| Interval { mean, low: f64::NEG_INFINITY, high: f64::INFINITY };
+    run.scenes[0].summaries.retain(|s| s.strategy == "power");
+    of(&mut run, "power").curve = vec![Point { passes: 1, cpu_s: none(0.3), rel_mse: none(2.0) }];
+    let svg = report::plot(&run.scenes[0]).expect("drawn");
+    assert!(svg.contains("power") && !svg.contains("NaN") && !svg.contains("inf") && !svg.contains("arrow"));
+}
+
+#[test]
+fn intervals_that_go_on_beyond_the_frame_are_marked_there() {
+    let (mut run, _) = record();
+    let plot = |run: &RunRecord| report::plot(&run.scenes[0]).expect("drawn");
+    let triangles = |svg: &str| svg.lines().filter(|line| line.contains("<polygon") && line.contains(",82 ")).count();
+    assert!(!plot(&run).contains("arrow") && triangles(&plot(&run)) == 0);
+    for point in &mut of(&mut run, "uniform").curve {
+        point.rel_mse.high = f64::INFINITY;
+    }
+    let svg = plot(&run);
+    assert!(svg.contains("filled arrow: no end, too heavy a tail to say") && !svg.contains("open arrow"));
+    // One for each of its budgets, and the band, which reaches up to the frame.
+    assert_eq!(triangles(&svg), of(&mut run, "uniform").curve.len() + 1);
+    of(&mut run, "power").curve[2].rel_mse.low = -1e-3;
+    let svg = plot(&run);
+    assert!(svg.contains("open arrow: the interval goes on") && !svg.contains("NaN"));
+    if let Some(path) = std::env::var_os("CITYLIGHTS_PLOT_OF_ARROWS") {
+        fs::write(path, &svg).expect("written");
+    }
 }
 
 #[test]
 fn another_renderer_stands_apart_and_leaves_the_others_as_they_are() {
     let (mut run, mut rows) = record();
-    let before = report::plot(&run.scenes[0], &rows).expect("drawn");
+    let before = report::plot(&run.scenes[0]).expect("drawn");
     let renderer = "Cycles in Blender 5".to_owned();
     let claim = Claim::External { renderer };
     let peer = Maker { strategy: "cycles", claim, setup_s: 1.5, pass_s: 0.04, v: 0.9, bias2: 0.02 };
@@ -426,12 +524,12 @@ fn another_renderer_stands_apart_and_leaves_the_others_as_they_are() {
     rows.extend(peer.rows());
     let table = report::table(&run, &run.scenes[0], &rows);
     let line = table.lines().find(|line| line.trim_start().starts_with("cycles")).expect("a row");
-    assert!(line.contains("external") && line.contains("0.0200 ±"), "{line}");
-    assert!(table.contains("cycles: Cycles in Blender 5."), "{table}");
+    assert!(line.contains("external") && line.contains(" – "), "{line}");
+    assert!(table.contains("`cycles`: Cycles in Blender 5."), "{table}");
     let work = table.split("\nWork\n").nth(1).expect("a table of work").split("\nWork of choosing").next();
     assert!(!work.expect("text").contains("cycles"), "nobody counted its work");
-    assert!(table.contains("over the 3 unbiased rows"), "it is not held to be unbiased");
-    let after = report::plot(&run.scenes[0], &rows).expect("drawn");
+    assert!(table.contains("holds for all 3 unbiased rows"), "it is not held to be unbiased");
+    let after = report::plot(&run.scenes[0]).expect("drawn");
     assert!(after.contains("dotted: other renderers") && !before.contains("dotted"));
     let colours = |svg: &str, name: &str| {
         let legend = svg.lines().position(|line| line.trim() == name).expect("in the legend");
@@ -466,9 +564,9 @@ fn an_edited_page_or_row_is_drift() {
 
     let rows_file = folder.path().join(store::ROWS_FILE);
     let rows = fs::read_to_string(&rows_file).expect("read");
-    fs::write(&rows_file, rows.replacen(",0.019,", ",0.9,", 1)).expect("written");
+    fs::write(&rows_file, rows.replace(",0.2,", ",0.4,")).expect("written");
     let drifts = report::check(folder.path()).expect("checked");
-    assert!(matches!(&drifts[..], [Drift::Differs { file, .. }] if file.ends_with("village.svg")), "{drifts:?}");
+    assert!(matches!(&drifts[..], [Drift::Differs { file, .. }] if file.ends_with("village.md")), "{drifts:?}");
 }
 
 /// What a check says of rows, changed by `change`.

@@ -9,7 +9,7 @@ use crate::measure::compare::{Compared, Options, compare};
 use crate::measure::engine::Engine;
 use crate::measure::environment;
 use crate::measure::films::Films;
-use crate::measure::plan::Budget;
+use crate::measure::plan::{Budget, budgets};
 use crate::measure::reference::{WORK_S, scene_hash};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
@@ -189,7 +189,8 @@ impl Session {
         let options = peers::measure::Options {
             peers,
             python: &python(arguments.peer_python.as_deref()),
-            spp: &sample_counts(arguments.budget.unwrap_or(64)),
+            spp: &budgets(arguments.budget.unwrap_or(64)).collect::<Vec<u32>>(),
+            times_s: &scene.times_s,
             runs: arguments.repeats.min(PEER_RUNS),
             seed: arguments.seed,
             folder: self.folder.path(),
@@ -297,11 +298,6 @@ fn peers(given: &[String]) -> Result<Vec<Peer>> {
         Some((_, peer)) => Err(Error::Invalid(format!("the peer `{}` is named twice", peer.name()))),
         None => Ok(peers),
     }
-}
-
-/// Sample counts of a peer: powers of 4 up to `most`.
-fn sample_counts(most: u32) -> Vec<u32> {
-    (0..16).map(|power| 1 << (2 * power)).take_while(|&spp| spp <= most).collect()
 }
 
 /// The Python that peers are run with.

@@ -66,9 +66,15 @@ pub(super) struct Series {
 pub(super) struct Dot {
     pub(super) x: f64,
     pub(super) y: f64,
-    /// The ends of the interval of `y`: NaN where it has none, infinite where the runs cannot tell one.
+    /// The ends of the interval of `y`: infinite where the runs cannot tell one, both not finite where it has none.
     pub(super) low: f64,
     pub(super) high: f64,
+}
+
+impl Dot {
+    fn has_interval(&self) -> bool {
+        self.low.is_finite() || self.high.is_finite()
+    }
 }
 
 impl Scale {
@@ -111,14 +117,39 @@ impl Chart {
             let frame = Frame {
                 x: Axis::over(&self.x, points().map(|p| p.x), LEFT, RIGHT),
                 // As tall as it is wide at most, however long the legend.
-                y: Axis::over(&self.y, points().map(|p| p.y), (height - BELOW).min(TOP + RIGHT - LEFT), TOP),
+                y: self.upright((height - BELOW).min(TOP + RIGHT - LEFT), TOP),
             };
             grid(&area, &frame)?;
             self.series.iter().try_for_each(|series| band(&area, &frame, series))?;
             self.series.iter().try_for_each(|series| line(&area, &frame, series))?;
+            self.series.iter().try_for_each(|series| arrows(&area, &frame, series))?;
         }
         legend.iter().try_for_each(|line| line.draw(&area))?;
         area.present()
+    }
+
+    /// The vertical axis between two pixels. It holds the points, and the ends of their intervals unless they are far off.
+    fn upright(&self, from: i32, to: i32) -> Axis<'_> {
+        let end = |p: &Dot, end: f64| match self.y.logarithmic {
+            // Half a decade from its point: a wide interval must not press all curves flat.
+            true if p.has_interval() => end.clamp(p.y / 3.0, p.y * 3.0),
+            false if end.is_finite() => end,
+            _ => p.y,
+        };
+        let points = self.series.iter().flat_map(|series| &series.points);
+        Axis::over(&self.y, points.flat_map(|p| [p.y, end(p, p.low), end(p, p.high)]), from, to)
+    }
+
+    /// What the arrows at the frame mean, as far as there are any.
+    fn arrows(&self) -> impl Iterator<Item = &'static str> {
+        let axis = self.upright(1, 0);
+        let points = self.series.iter().flat_map(|series| &series.points).filter(|p| p.has_interval());
+        let off: Vec<f64> = points.flat_map(|p| [p.low, p.high]).filter(|&end| !axis.holds(end)).collect();
+        let kinds = [
+            (off.iter().any(|end| end.is_finite()), "open arrow: the interval goes on"),
+            (off.iter().any(|end| end.is_infinite()), "filled arrow: no end, too heavy a tail to say"),
+        ];
+        kinds.into_iter().filter_map(|(is_there, meaning)| is_there.then_some(meaning))
     }
 
     /// The names of what is drawn, parameters on lines of their own, then the remarks.
@@ -134,6 +165,7 @@ impl Chart {
             wrapped(parameters).iter().for_each(|line| push(19, line, None));
         }
         self.remarks.iter().for_each(|(step, remark)| push(*step, remark, None));
+        self.arrows().for_each(|meaning| push(25, meaning, None));
         lines
     }
 }
@@ -164,8 +196,15 @@ impl<'a> Axis<'a> {
         Self { scale, low: low - room, high: high + room, from, to }
     }
 
+    /// Whether `value` is within the axis.
+    fn holds(&self, value: f64) -> bool {
+        self.scale.shows(value) && (self.low..=self.high).contains(&self.scale.place(value))
+    }
+
     /// The pixel of `value`, held within the axis.
     fn at(&self, value: f64) -> i32 {
+        // The logarithm of what is below 0 would be no number; it is below every axis that has one.
+        let value = if self.scale.logarithmic { value.max(0.0) } else { value };
         let share = ((self.scale.place(value) - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
         self.from + (share * f64::from(self.to - self.from)).round() as i32
     }
@@ -239,21 +278,38 @@ fn grid(area: &Area, frame: &Frame) -> Drawn {
     area.draw(&Text::new(frame.y.scale.label.clone(), (16, (top + bottom) / 2), upright))
 }
 
-/// The interval about the curve; a whisker where there is a single budget.
+/// The intervals about the curve, up or down to the frame where they go on beyond it; a whisker where a point that has
+/// one stands alone.
 fn band(area: &Area, frame: &Frame, Series { points, mark, .. }: &Series) -> Drawn {
-    let ends = points.iter().filter(|p| p.low.is_finite()).map(|p| {
-        let low = p.low;
-        // What reaches down to 0 or below ends at a logarithmic axis.
-        let low = if frame.y.scale.logarithmic { low.max(f64::MIN_POSITIVE) } else { low };
-        (frame.x.at(p.x), frame.y.at(low), frame.y.at(p.high))
-    });
-    let ends: Vec<(i32, i32, i32)> = ends.collect();
-    if let &[(x, low, high)] = &ends[..] {
-        return area.draw(&PathElement::new(vec![(x, low), (x, high)], mark.colour.stroke_width(2)));
+    for stretch in points.chunk_by(|a, b| a.has_interval() && b.has_interval()).filter(|s| s[0].has_interval()) {
+        let at = |p: &Dot, end| (frame.x.at(p.x), frame.y.at(end));
+        let drawn = match stretch {
+            [p] => area.draw(&PathElement::new(vec![at(p, p.low), at(p, p.high)], mark.colour.stroke_width(2))),
+            _ => {
+                let lower = stretch.iter().map(|p| at(p, p.low));
+                let upper = stretch.iter().rev().map(|p| at(p, p.high));
+                area.draw(&Polygon::new(lower.chain(upper).collect::<Vec<_>>(), mark.colour.mix(0.14)))
+            }
+        };
+        drawn?;
     }
-    let lower = ends.iter().map(|&(x, low, _)| (x, low));
-    let upper = ends.iter().rev().map(|&(x, _, high)| (x, high));
-    area.draw(&Polygon::new(lower.chain(upper).collect::<Vec<_>>(), mark.colour.mix(0.14)))
+    Ok(())
+}
+
+/// A mark at the frame wherever an interval goes on beyond it: filled where it has no end.
+fn arrows(area: &Area, frame: &Frame, Series { points, mark, .. }: &Series) -> Drawn {
+    for p in points.iter().filter(|p| p.has_interval()) {
+        for (end, inside) in [(p.low, -1), (p.high, 1)].into_iter().filter(|(end, _)| !frame.y.holds(*end)) {
+            let (x, tip) = (frame.x.at(p.x), frame.y.at(end));
+            let corners = [(x, tip), (x - 6, tip + 10 * inside), (x + 6, tip + 10 * inside)];
+            let inner = if end.is_finite() { WHITE.filled() } else { mark.colour.filled() };
+            area.draw(&Polygon::new(corners.to_vec(), inner))?;
+            let outline: Vec<(i32, i32)> = corners.into_iter().chain([corners[0], corners[1]]).collect();
+            area.draw(&PathElement::new(outline, mark.colour.stroke_width(2)))?;
+            area.draw(&PathElement::new(vec![(x, frame.y.at(p.y)), (x, tip)], mark.colour.mix(0.5).stroke_width(1)))?;
+        }
+    }
+    Ok(())
 }
 
 fn line(area: &Area, frame: &Frame, Series { points, mark, .. }: &Series) -> Drawn {

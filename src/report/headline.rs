@@ -86,8 +86,8 @@ fn below(scene: &SceneRecord, summaries: &[&Summary]) -> Vec<String> {
     for summary in summaries {
         let name = &summary.strategy;
         match (&summary.error, &summary.skipped, &summary.claim) {
-            (Some(error), ..) => below.push(format!("`{name}` failed: {error}.")),
-            (None, Some(skipped), _) => below.push(format!("`{name}` {skipped}.")),
+            (Some(error), ..) => below.push(format!("`{name}` failed: {}.", error.trim_end_matches('.'))),
+            (None, Some(skipped), _) => below.push(format!("`{name}` {}.", skipped.trim_end_matches('.'))),
             (None, None, Claim::Biased { why }) => below.push(format!("`{name}`: {why}.")),
             (None, None, Claim::External { renderer }) => below.push(format!("`{name}`: {renderer}.")),
             _ => {}

@@ -110,6 +110,7 @@ fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
         Line { cells: shown().map(|(i, column)| entry(column, &cells[i], ends(table, cells, i))).collect(), group }
     });
     Sheet { title: table.title.clone(), heads: heads.collect(), lines: lines.collect(), below: table.notes.clone() }
+        .explained()
 }
 
 /// The ends of the interval of the number in the column at `at`, if it has one.
@@ -128,13 +129,13 @@ fn entry(column: &ColumnRecord, cell: &Cell, ends: Option<(f64, f64)>) -> Entry 
         (Cell::Whole(count), Format::Bytes) => bytes(*count),
         (Cell::Whole(count), _) => grouped(*count),
         (Cell::Number(mean), format) => match (format, ends.map(|ends| Interval::of(*mean, ends))) {
-            (Format::Percent, Some(share)) => Estimate::signed_percent(share).line(),
+            (Format::Percent, Some(share)) => return Entry::Figure(Estimate::signed_percent(share)),
             (Format::Percent, None) => percent(*mean, 1.0),
-            (Format::Milliseconds, Some(seconds)) => Estimate::of(seconds.times(1e3)).line(),
+            (Format::Milliseconds, Some(seconds)) => return Entry::Figure(Estimate::of(seconds.times(1e3))),
             (Format::Milliseconds, None) => short(1e3 * mean),
-            (Format::Nanoseconds, Some(seconds)) => Estimate::of(seconds.times(1e9)).line(),
+            (Format::Nanoseconds, Some(seconds)) => return Entry::Figure(Estimate::of(seconds.times(1e9))),
             (Format::Nanoseconds, None) => short(1e9 * mean),
-            (_, Some(interval)) => Estimate::of(interval).line(),
+            (_, Some(interval)) => return Entry::Figure(Estimate::of(interval)),
             (_, None) => short(*mean),
         },
     };
