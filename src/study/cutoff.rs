@@ -76,7 +76,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     writer.note(format!(
         "Cities: street lamps alone, bare points 30 m apart, 5,000 to 9,000 lm, EV100 {EV100}; receivers by area, half on streets, half on \
          facades, which stay where they are where the buildings are taken away."
-    ));
+    ))?;
     session.finish(writer)
 }
 

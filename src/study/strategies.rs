@@ -195,8 +195,9 @@ fn by_probability(
     session.watch.end();
     if !unknown.is_empty() {
         let (scene, names) = (stage.scene().name(), unknown.join(", "));
-        writer
-            .note(format!("{scene}: not in the table of variance, since their probabilities cannot be told: {names}."));
+        writer.note(format!(
+            "{scene}: not in the table of variance, since their probabilities cannot be told: {names}."
+        ))?;
     }
     Ok(())
 }
