@@ -375,12 +375,25 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let budget = Budget { usual_passes: 4, most_passes: 4, seconds: 1.0 };
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &Films::of(folder, "mutants");
-    let options = Options { strategies: &strategies, budget, repeats: 3, seed: 1, threads: 1, cache: &cache, films };
+    let engine = &Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
+    let options = Options {
+        typed: "sixteen.toml",
+        strategies: &strategies,
+        budget,
+        repeats: 3,
+        seed: 1,
+        engine,
+        reference_work_s: 10.0,
+        cache: &cache,
+        films,
+    };
     let mut rows = RowWriter::create(folder).expect("a file");
     let Compared { scene, rows, .. } =
         compare(&stage, "sixteen", &options, &[], &mut rows, &Unobserved).expect("a comparison");
     let error = |i: usize| scene.summaries[i].error.as_deref();
     assert_eq!(error(0), None);
-    assert!(error(1).is_some_and(|text| text.contains("failed check `weights`")), "{:?}", error(1));
+    let shows = "citylights verify sixteen.toml --gate --seed 1 --strategies descent --only weights";
+    let line = |text: &str| text.contains("failed check `weights` at pixel ") && text.ends_with(shows);
+    assert!(error(1).is_some_and(|text| line(text) && !text.contains('\n')), "{:?}", error(1));
     assert!(rows.iter().all(|row| row.strategy != "descent"), "a wrong strategy was timed");
 }

@@ -68,6 +68,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let folder = tempfile::tempdir().expect("a folder");
     let strategies = parse_list("all,power,oracle,intensity,restir").expect("a list");
     let options = Comparison {
+        typed: "sixteen.toml",
         strategies: &strategies,
         budget: Budget { usual_passes: 16, most_passes: 64, seconds: 5.0 },
         repeats: 4,

@@ -164,6 +164,7 @@ impl Session {
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = Options {
+            typed: &arguments.scene_options.typed(file),
             strategies,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),

@@ -62,6 +62,28 @@ impl SceneOptions {
         Ok(scene)
     }
 
+    /// The file and these options as one would type them.
+    pub(super) fn typed(&self, file: &Path) -> String {
+        let quoted =
+            |text: &str| if text.contains(char::is_whitespace) { format!("'{text}'") } else { text.to_owned() };
+        let mut typed = quoted(&file.display().to_string());
+        let mut add = |option: &str, value: Option<String>| {
+            typed.extend(value.map(|value| format!(" --{option} {}", quoted(&value))));
+        };
+        add("scene-seed", self.scene_seed.map(|seed| seed.to_string()));
+        add("resolution", self.resolution.map(|(width, height)| format!("{width}x{height}")));
+        add("camera", self.camera.clone());
+        add("ev100", self.ev100.map(|ev100| ev100.to_string()));
+        add("exposure", self.exposure.map(|exposure| exposure.to_string()));
+        let offset =
+            Offset::NAMED.iter().find(|(_, offset)| *offset == self.offset).filter(|_| self.offset != Offset::SCALED);
+        add("offset", offset.map(|(name, _)| (*name).to_owned()));
+        let sampling = Some(self.light_sampling).filter(|by| *by != LightSampling::default());
+        add("light-sampling", sampling.map(|by| by.name().to_owned()));
+        add("leave-out", (self.leave_out == LeaveOut::No).then(|| "off".to_owned()));
+        typed
+    }
+
     /// The options that decide an image beside the scene itself.
     pub(super) fn describe(&self) -> String {
         format!("{:?}, light sampling {}, leave out {:?}", self.offset, self.light_sampling.name(), self.leave_out)

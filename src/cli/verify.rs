@@ -4,13 +4,15 @@ use super::progress::Progress;
 use super::scene::{SceneOptions, pool, threads};
 use super::{Outcome, print, say};
 use crate::base::error::{Error, Result};
+use crate::base::names;
 use crate::base::statistics::sidak;
+use crate::measure::gate;
 use crate::measure::observer::Observer;
 use crate::scene::{Parts, Scene, small};
 use crate::strategy::Claim;
 use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
 use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
-use crate::verify::{BY_CHANCE, Check, Options, Verifier};
+use crate::verify::{self, BY_CHANCE, Check, Options, Verifier};
 use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -38,6 +40,12 @@ pub(super) struct Arguments {
     /// The chance that any check fails although all strategies are right
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = level)]
     level: f64,
+    /// Look as shortly as `compare` does before it measures, at its whole film, and at the scene alone, unchanged
+    #[arg(long, conflicts_with_all = ["draws", "receivers", "level"])]
+    gate: bool,
+    /// Show this check alone
+    #[arg(long, value_name = "CHECK", value_parser = check)]
+    only: Option<&'static str>,
     /// One line a strategy
     #[arg(long, short)]
     quiet: bool,
@@ -56,31 +64,40 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     } else {
         arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<_>>()?
     };
-    let chances = BY_CHANCE.len() + metamorphic::CHANCES;
-    let options = Options {
-        receivers: arguments.receivers as usize,
-        draws: arguments.draws as usize,
-        seed: if arguments.fresh_seed { clock()? } else { arguments.seed },
-        // A check fails only if it fails twice.
-        level: sidak(arguments.level, chances * strategies.len() * scenes.len()).sqrt(),
-        ..Options::default()
+    let chances = (BY_CHANCE.len() + metamorphic::CHANCES) * strategies.len() * scenes.len();
+    let seed = if arguments.fresh_seed { clock()? } else { arguments.seed };
+    let options = if arguments.gate {
+        say(&format!("seed {seed}; as `compare` looks before it measures"));
+        gate::options(strategies.len(), seed)
+    } else {
+        say(&format!("seed {seed}; level {} for {chances} checks that go by chance", arguments.level));
+        Options {
+            receivers: arguments.receivers as usize,
+            draws: arguments.draws as usize,
+            seed,
+            // A check fails only if it fails twice.
+            level: sidak(arguments.level, chances).sqrt(),
+            ..Options::default()
+        }
     };
-    say(&format!(
-        "seed {}; level {} for {} checks that go by chance: each has failed when it fails twice at {:.1e}",
-        options.seed,
-        arguments.level,
-        chances * strategies.len() * scenes.len(),
-        options.level
-    ));
     let progress = Progress::new()?;
-    let failed = pool(arguments.threads)?.install(|| -> anyhow::Result<Vec<String>> {
-        let mut failed = Vec::new();
+    let (failed, shown) = pool(arguments.threads)?.install(|| -> anyhow::Result<(Vec<String>, usize)> {
+        let (mut failed, mut shown) = (Vec::new(), 0);
         for scene in scenes {
             progress.scene(scene.name());
-            failed.extend(verify(&scene, arguments, &strategies, options, &progress)?);
+            for found in verify(&scene, arguments, &strategies, options, &progress)? {
+                print(&found.text(arguments.quiet))?;
+                shown += found.checks.iter().flatten().count();
+                failed.extend(found.failures().map(|check| format!("{}: {} {check}\n", scene.name(), found.strategy)));
+            }
         }
-        Ok(failed)
+        Ok((failed, shown))
     })?;
+    if let (Some(only), 0) = (arguments.only, shown) {
+        return Err(
+            Error::Invalid(format!("no check `{only}` was made: it needs other options, or another scene")).into()
+        );
+    }
     if failed.is_empty() {
         print("every check passed\n")?;
         return Ok(Outcome::Done);
@@ -89,43 +106,47 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     Ok(Outcome::CheckFailed)
 }
 
-/// Verifies all strategies on a scene, prints what was found and gives the lines of what failed.
+/// Verifies the arithmetic and all strategies on a scene.
 fn verify(
     scene: &Scene,
     arguments: &Arguments,
     strategies: &[Configured],
     options: Options,
     watch: &Progress,
-) -> anyhow::Result<Vec<String>> {
-    let name = scene.name().to_owned();
+) -> anyhow::Result<Vec<Found>> {
     watch.begin("strategies", strategies.len() as u64);
-    let copies = Copies::new(scene, arguments.scene_options.offset(), arguments.scene_options.light_sampling())?;
+    let (whole, by) = (&arguments.scene_options, arguments.scene_options.light_sampling());
     let parts = scene.parts();
-    let camera = parts.camera.shrunk(PIXELS);
-    let stage = arguments.scene_options.prepare(Scene::new(Parts { camera, ..parts })?);
+    let camera = if arguments.gate { parts.camera } else { parts.camera.shrunk(PIXELS) };
+    let stage = whole.prepare(Scene::new(Parts { camera, ..parts })?);
     let verifier = Verifier::new(&stage, options);
+    let copies = (!arguments.gate).then(|| Copies::new(scene, whole.offset(), by)).transpose()?;
     // The changes are many, and each is looked at alone.
     let fewer = Options { receivers: options.receivers.min(8), draws: options.draws / 4, batches: 50, ..options };
-    let metamorphic = Metamorphic::new(&copies, fewer);
+    let metamorphic = copies.as_ref().map(|copies| Metamorphic::new(copies, fewer));
     let found: Vec<Found> = strategies
         .par_iter()
         .map(|strategy| {
             watch.check()?;
-            let found = Found::of(strategy, &verifier, &metamorphic);
+            let found = Found::of(strategy, &verifier, metamorphic.as_ref());
             watch.advance(1);
             Ok(found)
         })
         .collect::<Result<_>>()?;
     watch.end();
     let lights = stage.scene().lights().len();
-    print(&format!("{name}: {lights} lights, {} receivers\n", stage.receivers().len()))?;
-    let image = Found { strategy: "(the image)".into(), checks: Ok(metamorphic.image()), biased: false };
-    let mut failed = Vec::new();
-    for found in [image].iter().chain(&found) {
-        print(&found.text(arguments.quiet))?;
-        failed.extend(found.failures().map(|check| format!("{name}: {} {check}\n", found.strategy)));
+    print(&format!("{}: {lights} lights, {} receivers\n", scene.name(), stage.receivers().len()))?;
+    let mut image = gate::arithmetic(&stage, options.seed);
+    image.extend(metamorphic.iter().flat_map(Metamorphic::image));
+    let image = Found { strategy: "(the image)".into(), checks: Ok(image), biased: false };
+    let mut all: Vec<Found> = std::iter::once(image).chain(found).collect();
+    if let Some(only) = arguments.only {
+        all.iter_mut().filter_map(|found| found.checks.as_mut().ok()).for_each(|checks| {
+            checks.retain(|check| check.name == only);
+        });
+        all.retain(|found| !found.checks.as_ref().is_ok_and(Vec::is_empty));
     }
-    Ok(failed)
+    Ok(all)
 }
 
 /// What was found of a strategy; an error where it cannot serve the scene.
@@ -136,9 +157,11 @@ struct Found {
 }
 
 impl Found {
-    fn of(strategy: &Configured, verifier: &Verifier<'_>, metamorphic: &Metamorphic<'_>) -> Self {
+    fn of(strategy: &Configured, verifier: &Verifier<'_>, metamorphic: Option<&Metamorphic<'_>>) -> Self {
         let checks = verifier.verify(strategy).and_then(|mut checks| {
-            checks.extend(metamorphic.verify(strategy)?);
+            if let Some(metamorphic) = metamorphic {
+                checks.extend(metamorphic.verify(strategy)?);
+            }
             Ok(checks)
         });
         let biased = strategy.info().claim != Claim::Unbiased;
@@ -171,6 +194,11 @@ impl Found {
         let verdict = if failures == 0 { "pass".to_owned() } else { format!("FAIL {failures}") };
         format!("  {name:<24} {verdict} of {} checks; {last}\n", checks.len())
     }
+}
+
+fn check(text: &str) -> std::result::Result<&'static str, String> {
+    let near = || format!("no check has that name; near it: {}", names::near(text, verify::names()).join(", "));
+    verify::names().find(|name| *name == text).ok_or_else(near)
 }
 
 fn clock() -> Result<u64> {

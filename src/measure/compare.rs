@@ -24,6 +24,8 @@ use std::path::Path;
 
 /// How a comparison is done.
 pub struct Options<'a> {
+    /// The scene as the user named it, with the options that it was loaded with: for commands that show a failure.
+    pub typed: &'a str,
     /// The strategies.
     pub strategies: &'a [Configured],
     /// What each may spend in one run.
@@ -95,7 +97,7 @@ pub fn compare<'a>(
         summaries.push(summary);
         parts.push((Curve::of(runs, ladder), jackknife));
     }
-    hold_to_claims(&mut summaries, &reference.truth, &runs);
+    hold_to_claims(options, &mut summaries, &reference.truth, &runs);
     let entries =
         summaries.iter_mut().zip(parts).map(|(summary, (curve, jackknife))| Entry { summary, curve, jackknife });
     let headline = headline::settle(&mut entries.collect::<Vec<_>>());
@@ -114,7 +116,7 @@ fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> R
     let few = target.thinned(plan::RECEIVERS);
     let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
-    let gate = Gate::new(target.stage, options.strategies.len(), options.seed);
+    let gate = Gate::new(target.stage, options.typed, options.strategies.len(), options.seed);
     let mut pilots = Vec::new();
     for strategy in options.strategies {
         watch.check()?;
@@ -146,7 +148,7 @@ const LEVEL: f64 = 0.01;
 
 /// Gives every unbiased row an interval of its bias that holds for all of them together; one whose interval is off 0 has
 /// failed.
-fn hold_to_claims(summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
+fn hold_to_claims(options: &Options<'_>, summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
     let held = |s: &Summary| s.claim == Claim::Unbiased && s.error.is_none() && s.mean_bias.is_bounded();
     let level = sidak(LEVEL, summaries.iter().filter(|s| held(s)).count());
     for (summary, runs) in summaries.iter_mut().zip(runs).filter(|(summary, _)| held(summary)) {
@@ -155,7 +157,9 @@ fn hold_to_claims(summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
         if !found.holds(0.0) {
             let Interval { mean, low, high } = found.times(100.0);
             summary.error = Some(format!(
-                "biased: the image's mean is off by {mean:+.3} % ({low:+.3} % to {high:+.3} %, simultaneous 99 % interval)"
+                "biased: the image's mean is off by {mean:+.3} % ({low:+.3} % to {high:+.3} %, simultaneous 99 % interval); \
+                 citylights verify {} --seed {} --strategies {} --only image-mean",
+                options.typed, options.seed, summary.strategy
             ));
         }
     }

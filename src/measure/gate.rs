@@ -1,50 +1,77 @@
 //! Is a strategy right enough to be timed?
 //!
 //! A wrong one is not worth a figure: it may be fast because it is wrong. So each takes a short look at levels 0 and 1
-//! first, on the very scene it is to be measured on. `citylights verify` looks longer.
+//! first, on the very scene it is to be measured on; and so does the program's own arithmetic, since all errors are taken
+//! against it. `citylights verify` looks longer, and with `--gate` as shortly.
 
 use super::engine::Account;
 use crate::base::error::{Error, Result};
 use crate::base::statistics::sidak;
 use crate::strategy::registry::Configured;
-use crate::verify::{BY_CHANCE, Options, Verifier};
+use crate::verify::independent::{Own, independent};
+use crate::verify::{BY_CHANCE, Check, Options, Verifier, charged};
 use crate::visibility::stage::Stage;
+use std::sync::OnceLock;
 
 /// The chance that any row of a table is refused although all strategies are right.
 const LEVEL: f64 = 1e-4;
 
 /// Lets right strategies pass.
-pub(super) struct Gate<'a>(Verifier<'a>);
+pub struct Gate<'a> {
+    stage: &'a Stage,
+    verifier: Verifier<'a>,
+    /// As the user named it, with the options that it was loaded with.
+    scene: String,
+    seed: u64,
+    /// The check of the scene that failed, once it was looked at.
+    arithmetic: OnceLock<Option<Check>>,
+}
+
+/// How hard the gate looks at so many strategies.
+pub fn options(strategies: usize, seed: u64) -> Options {
+    // A check fails only if it fails twice.
+    let level = sidak(LEVEL, strategies * BY_CHANCE.len()).sqrt();
+    Options { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None }
+}
+
+/// The program's arithmetic on a stage against an independent one.
+pub fn arithmetic(stage: &Stage, seed: u64) -> Vec<Check> {
+    independent(stage, &Own(stage), seed, LEVEL)
+}
 
 impl<'a> Gate<'a> {
-    /// A gate for so many strategies on a stage.
-    pub(super) fn new(stage: &'a Stage, strategies: usize, seed: u64) -> Self {
-        // A check fails only if it fails twice.
-        let level = sidak(LEVEL, strategies * BY_CHANCE.len()).sqrt();
-        let options = Options { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None };
-        Self(Verifier::new(stage, options))
+    /// A gate for so many strategies on a stage; `scene` is how the user named it, with the options that it was loaded
+    /// with.
+    pub fn new(stage: &'a Stage, scene: &str, strategies: usize, seed: u64) -> Self {
+        let verifier = Verifier::new(stage, options(strategies, seed));
+        Self { stage, verifier, scene: scene.to_owned(), seed, arithmetic: OnceLock::new() }
     }
 
-    /// An error that names the check that a strategy fails.
-    pub(super) fn pass(&self, strategy: &Configured) -> Result<()> {
-        match self.0.verify(strategy)?.into_iter().find(|check| !check.passed) {
-            None => Ok(()),
-            Some(check) => Err(Error::Invalid(format!(
-                "failed check `{}`: statistic {:.3e}, limit {:.3e}",
-                check.name, check.statistic, check.limit
-            ))),
-        }
+    /// An error that names the check that a strategy fails, or its scene: one line, with the command that shows it.
+    pub fn pass(&self, strategy: &Configured) -> Result<()> {
+        let first = |checks: Vec<Check>| checks.into_iter().find(|check| !check.passed);
+        let arithmetic = self.arithmetic.get_or_init(|| first(arithmetic(self.stage, self.seed)));
+        let failed = match arithmetic {
+            Some(check) => Some(check.clone()),
+            None => first(self.verifier.verify(strategy)?),
+        };
+        failed.map_or(Ok(()), |check| Err(Error::Invalid(self.line(&check, strategy.name()))))
     }
 
-    /// An error if work of a strategy was on no clock of its own.
-    pub(super) fn charged(&self, _strategy: &Configured, account: Account) -> Result<()> {
-        let stray = account.process_s - account.threads_s;
-        if stray > 0.1 * account.threads_s + 5e-3 {
-            return Err(Error::Invalid(format!(
-                "failed check `charged`: {:.4} s on its clock, {:.4} s of the process",
-                account.threads_s, account.process_s
-            )));
-        }
-        Ok(())
+    fn line(&self, check: &Check, strategy: &str) -> String {
+        let Check { name, statistic, limit, .. } = check;
+        format!(
+            "failed check `{name}`{}: statistic {statistic:.3e}, limit {limit:.3e}; citylights verify {} --gate --seed {} \
+             --strategies {strategy} --only {name}",
+            check.place(),
+            self.scene,
+            self.seed
+        )
+    }
+
+    /// An error if a strategy was charged for other work than the process did meanwhile.
+    pub(super) fn charged(&self, strategy: &Configured, account: Account) -> Result<()> {
+        let check = charged(account.threads_s, account.process_s);
+        if check.passed { Ok(()) } else { Err(Error::Invalid(self.line(&check, strategy.name()))) }
     }
 }

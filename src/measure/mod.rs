@@ -13,7 +13,7 @@ pub mod errors;
 pub mod experiment;
 pub mod figure;
 pub mod films;
-mod gate;
+pub mod gate;
 pub mod headline;
 pub mod inspect;
 pub mod observer;

@@ -54,7 +54,7 @@ use tally::Tally;
 pub struct Pick {
     /// Which light.
     pub light: LightId,
-    /// What its contribution is multiplied with; finite and 0 or more.
+    /// What its contribution is multiplied with; finite and 0 or more, which `verify` checks (`weights-finite`).
     pub weight: f32,
     /// The point on it, in `[0, 1)^2`.
     pub uv: [f32; 2],
@@ -81,14 +81,12 @@ impl<'a, T: Tally> Picks<'a, T> {
     /// Picks a light; the harness draws the point on it.
     #[inline]
     pub fn push(&mut self, light: LightId, weight: f32) {
-        debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
         self.list.push(Pick { light, weight, uv: Pick::DRAW });
     }
 
     /// Picks a point of a light; `uv` in `[0, 1)^2`.
     #[inline]
     pub fn push_at(&mut self, light: LightId, weight: f32, uv: [f32; 2]) {
-        debug_assert!(weight.is_finite() && weight >= 0.0, "weight {weight} of light {light}");
         self.list.push(Pick { light, weight, uv });
     }
 }

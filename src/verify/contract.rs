@@ -1,5 +1,6 @@
 //! Does a sampler keep the promises that hold exactly?
 
+use super::calls::{self, count_different};
 use super::observe::{Site, freedom};
 use super::truth::grey;
 use super::weights::ROUNDING;
@@ -8,23 +9,34 @@ use crate::base::statistics::{sidak, student_quantile};
 use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
+use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::strategy::Pick;
 use crate::strategy::erased::{Frame, PickBuffer};
 use glam::DVec3;
 
 /// The checks' names.
-pub(super) const IDS: &str = "ids";
+const IDS: &str = "ids";
 const VALID: &str = "weights-finite";
 const SEED: &str = "same-seed";
 const THREADS: &str = "threads";
 const REPLAY: &str = "replay";
 const ALLOCATION: &str = "allocation";
+/// Where one of these fails, nothing else can be looked at.
+pub(super) const POSSIBLE: [&str; 2] = [IDS, VALID];
+/// The checks that hold exactly.
+pub(super) const NAMES: [&str; 7] = [IDS, VALID, SEED, THREADS, REPLAY, ALLOCATION, RECIPROCAL];
 pub(super) const PICKS: &str = "picks";
 const RECIPROCAL: &str = "reciprocal";
 
+/// f32 counts and weights; an entry of 10^-10 of a cumulative sum in f64 keeps five digits.
+const RECIPROCAL_LIMIT: f64 = 1e-4;
+
 /// Passes that are looked at.
 const PASSES: u32 = 8;
+
+/// Passes of the films that are compared with one another.
+const FILM_PASSES: u32 = 3;
 
 /// How many picks name no light of a scene with so many.
 pub fn picks_in_range(picks: &[Pick], lights: usize) -> usize {
@@ -36,27 +48,89 @@ pub fn picks_valid(picks: &[Pick]) -> usize {
     picks.iter().filter(|pick| !(pick.weight.is_finite() && pick.weight >= 0.0)).count()
 }
 
+/// Picks that no right sampler makes: of no light, or with a weight that none can have.
+#[derive(Clone, Default)]
+pub(super) struct Impossible {
+    picks: u64,
+    ids: u64,
+    weights: u64,
+    /// Pixel and light of the first of each.
+    first_id: Option<(u32, LightId)>,
+    first_weight: Option<(u32, LightId)>,
+}
+
+impl Impossible {
+    /// Whether there are any.
+    pub(super) fn any(&self) -> bool {
+        self.ids + self.weights > 0
+    }
+
+    /// Counts a pick at a pixel; gives whether it is possible.
+    pub(super) fn look(&mut self, pick: &Pick, pixel: u32, lights: usize) -> bool {
+        let picks = std::slice::from_ref(pick);
+        let (beyond, invalid) = (picks_in_range(picks, lights) > 0, picks_valid(picks) > 0);
+        self.picks += 1;
+        if beyond {
+            self.ids += 1;
+            self.first_id.get_or_insert((pixel, pick.light));
+        }
+        if invalid {
+            self.weights += 1;
+            self.first_weight.get_or_insert((pixel, pick.light));
+        }
+        !beyond && !invalid
+    }
+
+    /// Adds what was found elsewhere.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.picks += other.picks;
+        self.ids += other.ids;
+        self.weights += other.weights;
+        self.first_id = self.first_id.or(other.first_id);
+        self.first_weight = self.first_weight.or(other.first_weight);
+    }
+}
+
+/// The first passes at each receiver, and at those that [`threads`] renders.
+pub(super) fn impossible(subject: &Subject<'_, '_>) -> Impossible {
+    let (all, rendered) = (subject.stage().receivers(), rendered(subject));
+    let lights = subject.stage().scene().lights().len();
+    let mut found = Impossible::default();
+    for (frame, receivers, passes) in [(all, subject.receivers(), PASSES), (&rendered, &rendered, FILM_PASSES)] {
+        calls::visit(subject.sampler, Frame::new(frame, subject.key(0)), receivers, 0..passes, false, |i, _, call| {
+            call.iter().for_each(|pick| {
+                found.look(pick, receivers[i].pixel, lights);
+            });
+        });
+    }
+    found
+}
+
+/// The checks that nothing else makes sense without.
+pub(super) fn possible(found: &Impossible) -> [Check; 2] {
+    let Impossible { picks, ids, weights, first_id, first_weight } = *found;
+    let check = |name, count: u64, first: Option<(u32, LightId)>, what: &str| {
+        let detail = format!("{what}, of {picks} picks; the first is named");
+        Check::new(name, count as f64, 0.0, detail).at(first.map(|at| at.0), first.map(|at| at.1))
+    };
+    [
+        check(IDS, ids, first_id, "ids beyond the table of lights"),
+        check(VALID, weights, first_weight, "weights below 0 or not finite"),
+    ]
+}
+
 /// The checks that need no statistics.
 pub(super) fn exact(subject: &Subject<'_, '_>) -> Vec<Check> {
-    let [ids, valid] = ids_and_weights(subject);
-    if !ids.passed {
-        return vec![ids, valid];
-    }
-    let mut checks = vec![ids, valid, same_seed(subject), threads(subject), replay(subject)];
+    let mut checks = vec![same_seed(subject), threads(subject), replay(subject)];
     if let Some(counter) = subject.verifier.options.allocations {
         checks.push(allocation(subject, counter));
     }
     checks
 }
 
-fn ids_and_weights(subject: &Subject<'_, '_>) -> [Check; 2] {
-    let picks = subject.calls(subject.stage().receivers(), subject.receivers(), 0..PASSES).concat();
-    let lights = subject.stage().scene().lights().len();
-    let of = format!("of {} picks at {} receivers", picks.len(), subject.receivers().len());
-    [
-        Check::new(IDS, picks_in_range(&picks, lights) as f64, 0.0, format!("ids beyond the {lights} lights, {of}")),
-        Check::new(VALID, picks_valid(&picks) as f64, 0.0, format!("weights below 0 or not finite, {of}")),
-    ]
+/// The receivers that films are made of: more than one tile of 64.
+fn rendered(subject: &Subject<'_, '_>) -> Vec<Receiver> {
+    spread(subject.stage().receivers(), 80)
 }
 
 /// The same picks again from a new worker, from one that comes the other way round, and pass by pass.
@@ -78,29 +152,24 @@ fn same_seed(subject: &Subject<'_, '_>) -> Check {
     Check::new(SEED, differ as f64, 0.0, detail)
 }
 
-fn count_different(a: &[Vec<Pick>], b: &[Vec<Pick>]) -> usize {
-    a.iter().zip(b).filter(|(a, b)| a != b).count()
-}
-
 /// One thread, two threads and a split of the passes: the same bytes.
 fn threads(subject: &Subject<'_, '_>) -> Check {
-    // More than one tile of 64.
-    let receivers = spread(subject.stage().receivers(), 80);
+    let receivers = rendered(subject);
     let plan = Plan { stage: subject.stage(), receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
     let film = |run: &dyn Fn(&mut Film)| {
         let mut film = Film::new(receivers.len());
         run(&mut film);
         film
     };
-    let one = film(&|film| plan.run(3, film));
+    let one = film(&|film| plan.run(FILM_PASSES, film));
     let split = film(&|film| {
         plan.run(1, film);
-        plan.run(2, film);
+        plan.run(FILM_PASSES - 1, film);
     });
-    let current = film(&|film| plan.run_parallel(3, film));
+    let current = film(&|film| plan.run_parallel(FILM_PASSES, film));
     let mut differ = usize::from(one != split) + usize::from(one != current);
     match rayon::ThreadPoolBuilder::new().num_threads(2).build() {
-        Ok(pool) => differ += usize::from(one != pool.install(|| film(&|film| plan.run_parallel(3, film)))),
+        Ok(pool) => differ += usize::from(one != pool.install(|| film(&|film| plan.run_parallel(FILM_PASSES, film)))),
         Err(_) => differ += 1,
     }
     Check::new(THREADS, differ as f64, 0.0, "films that differ with threads or with a split of the passes, of 3".into())
@@ -154,7 +223,7 @@ pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -
 /// The sum of the expected counts against the mean number of picks, at each receiver.
 pub(super) fn picks(sites: &[Site<'_>], options: &Options) -> Check {
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom(sites));
-    let mut worst = (0.0f64, String::new());
+    let mut worst = (0.0f64, None, String::new());
     for site in sites {
         let Some(counts) = site.expected() else { continue };
         let wanted: f64 = counts.iter().map(|&c| f64::from(c)).sum();
@@ -163,17 +232,22 @@ pub(super) fn picks(sites: &[Site<'_>], options: &Options) -> Check {
         let off = picks.mean - wanted;
         let t = if off == 0.0 { 0.0 } else { (off / error).abs() };
         if t.is_nan() || t > worst.0 {
-            worst = (t, format!("; worst at pixel {}: {:.5} for {wanted:.5}", site.at.pixel, picks.mean));
+            worst = (t, Some(site.at.pixel), format!(": {:.5} for {wanted:.5}", picks.mean));
         }
     }
-    let detail = format!("greatest |t| of mean picks against expected ones, seed {}{}", options.seed, worst.1);
-    Check::new(PICKS, worst.0, limit, detail)
+    let detail = format!("greatest |t| of mean picks against expected ones{}, seed {}", worst.2, options.seed);
+    Check::new(PICKS, worst.0, limit, detail).at(worst.1, None)
 }
 
 /// Each pick's weight against the reciprocal of its expected count, as independent picks have it.
 pub(super) fn reciprocal(sites: &[Site<'_>]) -> Check {
-    let worst = sites.iter().map(|site| site.worst_reciprocal).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
-    let detail = format!("greatest |weight x expected count - 1| of a pick; light {}", worst.1);
-    // f32 counts and weights; an entry of 10^-10 of a cumulative sum in f64 keeps five digits.
-    Check::new(RECIPROCAL, worst.0, 1e-4, detail)
+    let mut worst =
+        Check::new(RECIPROCAL, 0.0, RECIPROCAL_LIMIT, "greatest |weight x expected count - 1| of a pick".into());
+    for site in sites {
+        let (off, light) = site.worst_reciprocal;
+        if off > worst.statistic {
+            worst = Check::new(RECIPROCAL, off, RECIPROCAL_LIMIT, worst.detail).at(Some(site.at.pixel), Some(light));
+        }
+    }
+    worst
 }

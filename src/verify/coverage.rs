@@ -46,9 +46,8 @@ pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
             }
         }
     }
-    let place = first.map_or_else(String::new, |(light, pixel, share)| {
-        format!("; light {light} is {:.3} % of the radiance at pixel {pixel} and has no chance there", share * 100.0)
-    });
-    let detail = format!("lights that add something and cannot be chosen, of {hypotheses}{place}");
-    Check::new(COVERAGE, missing as f64, 0.0, detail)
+    let share =
+        first.map_or_else(String::new, |(.., share)| format!("; this one is {:.3} % of the radiance", share * 100.0));
+    let detail = format!("lights that add something and cannot be chosen, of {hypotheses}{share}");
+    Check::new(COVERAGE, missing as f64, 0.0, detail).at(first.map(|first| first.1), first.map(|first| first.0))
 }

@@ -50,6 +50,11 @@ const CHANGES: [(&str, Change, f64); 8] = [
     ("hidden", Change::Hidden, 1e-5),
 ];
 
+/// The names of the checks.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    CHANGES.iter().map(|(name, ..)| *name).chain([VALID, COUNTS])
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Change {
     /// Lengths by this factor, intensities by its square.
@@ -167,7 +172,7 @@ impl<'a> Metamorphic<'a> {
     /// them.
     fn counts(&self, base: &dyn AnySampler, samplers: &[Box<dyn AnySampler>]) -> Option<Check> {
         let lights = self.whole.stage.scene().lights().len();
-        let mut worst = (0.0f64, String::new());
+        let mut worst = (0.0f64, None, String::new());
         for ((name, change, _), other) in CHANGES.iter().zip(samplers) {
             let Change::Scaled(_) = change else { continue };
             for at in &self.whole.receivers {
@@ -180,13 +185,13 @@ impl<'a> Metamorphic<'a> {
                 let apart: f64 = here.iter().zip(&there).map(|(&a, &b)| f64::from((a - b).abs())).sum();
                 let share = if apart == 0.0 { 0.0 } else { apart / total };
                 if share > worst.0 || share.is_nan() {
-                    worst = (share, format!("; worst at pixel {}, {name}", at.pixel));
+                    worst = (share, Some(at.pixel), format!(", {name}"));
                 }
             }
         }
-        let detail = format!("greatest share of expected counts that a change of scale moves{}", worst.1);
+        let detail = format!("greatest share of expected counts that a change of scale moves{}", worst.2);
         // A light on the very edge of a range, or a tie between two splits, may fall either way.
-        Some(Check::new(COUNTS, worst.0, 1e-3, detail))
+        Some(Check::new(COUNTS, worst.0, 1e-3, detail).at(worst.1, None))
     }
 }
 
@@ -205,16 +210,16 @@ fn valid<'s, 'v: 's>(subjects: impl Iterator<Item = Subject<'s, 'v>>) -> Check {
 fn estimate(name: &'static str, subject: &Subject<'_, '_>) -> Check {
     let sites = observe::sites(subject);
     let distance = Distance::new(&sites);
-    let (worst, place) = distance.worst();
+    let (worst, pixel, off) = distance.worst();
     let options = &subject.verifier.options;
     let limit = surprise(sidak(options.level, sites.len() + 1));
     let (mean, tested) = (distance.of_mean(), distance.tested());
     let detail = format!(
-        "greatest ln 1/p of {} receivers and their mean ({mean:.2}), {tested:.2} % tested, seed {}{place}",
+        "greatest ln 1/p of {} receivers and their mean ({mean:.2}), {tested:.2} % tested, seed {}{off}",
         sites.len(),
         options.seed
     );
-    Check::new(name, worst.max(mean), limit, detail)
+    Check::new(name, worst.max(mean), limit, detail).at(pixel, None)
 }
 
 impl Change {

@@ -7,6 +7,10 @@
 //! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is
 //! known.
 //!
+//! Two more checks look at several runs ([`Verifier::verify`]): another seed gives other picks, and samplers that are
+//! built alike agree whoever arrives first. The [arithmetic](independent) that strategies are held to is checked too, and
+//! so are the [halves] of a reference and what a strategy is [charged](charged()).
+//!
 //! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left
 //! out here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
 //!
@@ -15,63 +19,38 @@
 //! chance: many checks of many strategies need a tiny level, and there the tails of a mean of finite draws are not
 //! Student's.
 
+mod arrival;
+mod calls;
+mod charged;
+mod check;
 mod contract;
 mod coverage;
 mod estimate;
+mod halves;
+pub mod independent;
 pub mod metamorphic;
 mod observe;
 mod pool;
+mod seeds;
 mod truth;
 mod weights;
 
+pub use charged::charged;
+pub use check::Check;
 pub use contract::{allocations, picks_in_range, picks_valid};
+pub use halves::halves;
 pub use truth::Truth;
 
 use crate::base::error::Result;
 use crate::base::random::{RunKey, hash};
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
+use crate::strategy::erased::{AnySampler, Frame};
 use crate::strategy::registry::Configured;
 use crate::strategy::{BuildContext, Claim, Pick};
 use crate::visibility::stage::Stage;
 use rayon::prelude::*;
-use std::fmt;
 use std::ops::Range;
 use std::sync::OnceLock;
-
-/// What one check found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// Its name: `weights`.
-    pub name: &'static str,
-    /// What was found; compared with [`limit`](Self::limit).
-    pub statistic: f64,
-    /// The greatest statistic that passes.
-    pub limit: f64,
-    /// Whether it passed.
-    pub passed: bool,
-    /// What the statistic is, where it was greatest, what it could have found.
-    pub detail: String,
-}
-
-impl Check {
-    fn new(name: &'static str, statistic: f64, limit: f64, detail: String) -> Self {
-        // Not a number is a failure.
-        Self { name, statistic, limit, passed: statistic <= limit, detail }
-    }
-
-    /// Whether other numbers could give another verdict.
-    fn by_chance(&self) -> bool {
-        BY_CHANCE.contains(&self.name)
-    }
-}
-
-impl fmt::Display for Check {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let verdict = if self.passed { "pass" } else { "FAIL" };
-        write!(f, "{verdict} {:<14} {:>11.4e} (limit {:.4e})  {}", self.name, self.statistic, self.limit, self.detail)
-    }
-}
 
 /// How hard to look.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +80,17 @@ impl Default for Options {
 /// The checks of levels 0 and 1 that a right strategy may fail by chance.
 pub const BY_CHANCE: [&str; 6] =
     [contract::PICKS, coverage::COVERAGE, weights::WEIGHTS, weights::TOTAL, estimate::ESTIMATE, estimate::IMAGE];
+
+/// The names of the checks of strategies and of the arithmetic of a scene.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    let contract = contract::NAMES.into_iter().chain([seeds::ANOTHER, arrival::ORDER]);
+    contract.chain(BY_CHANCE).chain([estimate::BIAS]).chain(independent::NAMES).chain(metamorphic::names())
+}
+
+/// Whether other numbers could give another verdict.
+fn by_chance(check: &Check) -> bool {
+    BY_CHANCE.contains(&check.name)
+}
 
 /// How many times as much the second look draws.
 const MORE: usize = 4;
@@ -134,16 +124,22 @@ impl<'a> Verifier<'a> {
 
     /// Checks a strategy: levels 0 and 1.
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
-        let sampler = strategy.build(BuildContext { stage: self.stage, seed: self.options.seed })?;
-        Ok(self.verify_sampler(&*sampler, strategy.info().claim))
+        let build = || strategy.build(BuildContext { stage: self.stage, seed: self.options.seed });
+        let sampler = build()?;
+        let mut checks = self.verify_sampler(&*sampler, strategy.info().claim);
+        if checks.iter().all(|check| check.passed || !contract::POSSIBLE.contains(&check.name)) {
+            checks.push(arrival::order(self.stage.receivers(), &self.receivers, self.options.seed, build)?);
+        }
+        Ok(checks)
     }
 
-    /// Checks a sampler that was built for the stage and claims so much.
+    /// Checks a sampler that was built for the stage and claims so much. What takes more than one sampler to see,
+    /// [`verify`](Self::verify) checks.
     pub fn verify_sampler(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
         let mut checks = self.look(sampler, claim);
-        if checks.iter().any(|check| !check.passed && check.by_chance()) {
+        if checks.iter().any(|check| !check.passed && by_chance(check)) {
             let second = self.second().look(sampler, claim);
-            for check in checks.iter_mut().filter(|check| !check.passed && check.by_chance()) {
+            for check in checks.iter_mut().filter(|check| !check.passed && by_chance(check)) {
                 if let Some(again) = second.iter().find(|again| again.name == check.name) {
                     check.clone_from(again);
                 }
@@ -155,12 +151,19 @@ impl<'a> Verifier<'a> {
     /// One look: every check fails a right sampler with the chance `options.level`.
     pub fn look(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
         let subject = Subject { verifier: self, sampler };
-        let mut checks = contract::exact(&subject);
-        // An id that is out of range has nothing to be looked up.
-        if checks.iter().any(|check| !check.passed && check.name == contract::IDS) {
-            return checks;
+        let mut impossible = contract::impossible(&subject);
+        // An id that is out of range has nothing to be looked up, and no number is near one that is none.
+        if impossible.any() {
+            return contract::possible(&impossible).into();
         }
         let sites = observe::sites(&subject);
+        sites.iter().for_each(|site| impossible.add(&site.impossible));
+        let mut checks = Vec::from(contract::possible(&impossible));
+        if impossible.any() {
+            return checks;
+        }
+        checks.extend(contract::exact(&subject));
+        checks.push(seeds::another(&subject));
         checks.push(contract::picks(&sites, &self.options));
         match claim {
             Claim::Unbiased => {
@@ -208,21 +211,9 @@ impl Subject<'_, '_> {
         RunKey { seed: self.verifier.options.seed, run }
     }
 
-    /// The picks of run 0 at receivers of a frame, by receiver and pass.
+    /// The picks of run 0 at receivers of a frame, by receiver and pass, points on lights drawn.
     fn calls(&self, frame: &[Receiver], receivers: &[Receiver], passes: Range<u32>) -> Vec<Vec<Pick>> {
-        let mut calls = vec![Vec::new(); receivers.len() * passes.len()];
-        let mut buffer = PickBuffer::default();
-        for block in blocks(self.sampler, passes.clone()) {
-            let begun = self.sampler.begin(Frame::new(frame, self.key(0)), block.clone());
-            begun.worker(false).fill(receivers, block.clone(), true, &mut buffer);
-            let mut found = buffer.calls();
-            for at in 0..receivers.len() {
-                for (pass, call) in block.clone().zip(found.by_ref()) {
-                    calls[at * passes.len() + (pass - passes.start) as usize] = call.to_vec();
-                }
-            }
-        }
-        calls
+        calls::calls(self.sampler, Frame::new(frame, self.key(0)), receivers, passes, true)
     }
 }
 

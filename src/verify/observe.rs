@@ -5,6 +5,7 @@
 //! shows which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
 
 use super::Subject;
+use super::contract::Impossible;
 use super::pool::{Bin, Pool, Steady};
 use super::truth::{Truth, grey};
 use crate::base::statistics::{Moments, skewness, unskewed};
@@ -51,6 +52,8 @@ pub(super) struct Site<'a> {
     pub(super) worst_reciprocal: (f64, u32),
     /// Whether each light was ever picked.
     pub(super) seen: Vec<bool>,
+    /// Picks that nothing can be done with.
+    pub(super) impossible: Impossible,
     current: Batch,
     finished: Vec<Batch>,
 }
@@ -165,6 +168,9 @@ impl Site<'_> {
         let lights = stage.scene().lights();
         let batch = &mut self.current;
         for pick in buffer.calls().flatten() {
+            if !self.impossible.look(pick, self.at.pixel, lights.len()) {
+                continue;
+            }
             let (id, weight) = (pick.light as usize, f64::from(pick.weight));
             self.seen[id] = true;
             let light = &lights[id];
@@ -244,6 +250,7 @@ pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
                 counts,
                 told,
                 worst_reciprocal: (0.0, 0),
+                impossible: Impossible::default(),
                 current: Batch::default(),
                 finished: Vec::new(),
             }
@@ -297,7 +304,12 @@ fn counts(subject: &Subject<'_, '_>, calls: &[u32]) -> Vec<Counts> {
         run(subject, PILOT, calls, |site, buffer| {
             let Counts { counts, told } = &mut counts[site];
             if !*told {
-                buffer.calls().flatten().for_each(|pick| counts[pick.light as usize] += 1.0);
+                for pick in buffer.calls().flatten() {
+                    // What is beyond the table is counted where the picks are looked at.
+                    if let Some(count) = counts.get_mut(pick.light as usize) {
+                        *count += 1.0;
+                    }
+                }
             }
         });
         let sites = counts.iter_mut().zip(calls).zip(&subject.verifier.truths);

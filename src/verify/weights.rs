@@ -24,7 +24,7 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
     // The truth's own variance is known from few repetitions: it counts for more, as far out as the limit.
     let repetitions = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), REPEATS - 1);
     let doubt = (repetitions / limit).powi(2);
-    let mut worst = (0.0f64, String::new());
+    let mut worst = (0.0f64, None, String::new());
     for site in sites {
         for bin in site.bins() {
             let found = site.found(bin);
@@ -38,16 +38,14 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
             if z.is_nan() || z.abs() > worst.0 {
                 worst = (
                     if z.is_nan() { f64::INFINITY } else { z.abs() },
-                    format!(
-                        "; worst at pixel {} light {} and its like: {:.4} of {:.4} a call",
-                        site.at.pixel, bin.first, found.mean, bin.expected
-                    ),
+                    Some((site.at.pixel, bin.first)),
+                    format!("; of this light and its like {:.4} of {:.4} a call", found.mean, bin.expected),
                 );
             }
         }
     }
-    let detail = format!("greatest |t| of {hypotheses} bins, seed {}{}", options.seed, worst.1);
-    Check::new(WEIGHTS, worst.0, limit, detail)
+    let detail = format!("greatest |t| of {hypotheses} bins, seed {}{}", options.seed, worst.2);
+    Check::new(WEIGHTS, worst.0, limit, detail).at(worst.1.map(|at| at.0), worst.1.map(|at| at.1))
 }
 
 /// The mean of weight times expected count over the picks of lights that add something: 1.

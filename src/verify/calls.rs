@@ -1,0 +1,50 @@
+//! What does a sampler pick?
+
+use crate::scene::receiver::Receiver;
+use crate::strategy::Pick;
+use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
+use std::ops::Range;
+
+/// Shows `take` the picks of each call: the receiver's place in the list, the pass, and what was picked. A receiver's
+/// passes come one after the other, in blocks that the sampler can begin together.
+///
+/// With `points`, those on lights are drawn as the harness draws them; without, only a strategy's own are there.
+pub(super) fn visit(
+    sampler: &dyn AnySampler,
+    frame: Frame<'_>,
+    receivers: &[Receiver],
+    passes: Range<u32>,
+    points: bool,
+    mut take: impl FnMut(usize, u32, &[Pick]),
+) {
+    let mut buffer = PickBuffer::default();
+    for block in blocks(sampler, passes) {
+        let begun = sampler.begin(frame, block.clone());
+        let mut worker = begun.worker(false);
+        for (i, at) in receivers.iter().enumerate() {
+            worker.fill(std::slice::from_ref(at), block.clone(), points, &mut buffer);
+            block.clone().zip(buffer.calls()).for_each(|(pass, call)| take(i, pass, call));
+        }
+    }
+}
+
+/// The picks of each call, by receiver and pass; `points` as in [`visit`].
+pub(super) fn calls(
+    sampler: &dyn AnySampler,
+    frame: Frame<'_>,
+    receivers: &[Receiver],
+    passes: Range<u32>,
+    points: bool,
+) -> Vec<Vec<Pick>> {
+    let mut calls = vec![Vec::new(); receivers.len() * passes.len()];
+    visit(sampler, frame, receivers, passes.clone(), points, |i, pass, call| {
+        calls[i * passes.len() + (pass - passes.start) as usize] = call.to_vec();
+    });
+    calls
+}
+
+/// How many calls differ, of as many on both sides. Bit for bit: what is no number is like itself.
+pub(super) fn count_different(a: &[Vec<Pick>], b: &[Vec<Pick>]) -> usize {
+    let bits = |pick: &Pick| (pick.light, pick.weight.to_bits(), pick.uv.map(f32::to_bits));
+    a.iter().zip(b).filter(|(a, b)| !a.iter().map(bits).eq(b.iter().map(bits))).count()
+}
