@@ -32,10 +32,6 @@ const FEWEST: u64 = 100;
 /// Most lights that the oracle is tried among.
 const MOST_OF_ORACLE: u64 = 10_000;
 
-/// Receivers that errors are taken at, by the number of lights from which on: heavy tails want many, and their truth takes
-/// a ray for every light.
-const PIXELS: [(u64, usize); 3] = [(1_000_000, 512), (100_000, 2_048), (0, 16_384)];
-
 /// What grows: a column of the table, what it is called, and what is written along its axis.
 const QUANTITIES: [(&str, &str, &str); 4] = [
     ("setup_cpu_s", "set-up", "CPU s of set-up"),
@@ -160,9 +156,9 @@ fn at_size(
         return Ok(());
     }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let own = PIXELS.iter().find(|(from, _)| lights >= *from).map_or(0, |(_, pixels)| *pixels);
-    let target = Target::whole(&stage).thinned(session.pixels(own));
-    let reference = session.reference(&target)?;
+    // Heavy tails want all the receivers that there are.
+    let whole = Target::whole(&stage);
+    let (target, reference) = session.reference(&whole.thinned(session.pixels(whole.places.len())))?;
     writer.note(format!(
         "{} lights, {} of which can reach what the camera sees; the reference's own relMSE is {:.1e}.",
         stage.scene().lights().len(),

@@ -246,14 +246,14 @@ fn by_measuring(
         return Ok(());
     }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let target = Target::whole(&stage).thinned(session.pixels(PIXELS));
-    let reference = session.reference(&target)?;
+    let (target, reference) = session.reference(&Target::whole(&stage).thinned(session.pixels(PIXELS)))?;
     let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
     writer.note(format!(
-        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
+        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}, at {} receivers.",
         stage.scene().name(),
         stage.scene().lights().len(),
-        stage.lights().len()
+        stage.lights().len(),
+        target.places.len()
     ))?;
     let found = session.trial(&target, &reference.truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
     let mut rows = Vec::new();

@@ -129,8 +129,7 @@ fn step_by_step(
     if writer.has(table, &[], steps.len() * budgets.len()) {
         return Ok(());
     }
-    let target = target(session, stage);
-    let reference = session.reference(&target)?;
+    let (target, reference) = session.reference(&Target::whole(stage).thinned(session.pixels(PIXELS)))?;
     note(writer, &target, &reference)?;
     let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
     let tried = session.trial(&target, &reference.truth, &strategies, Budgets::All)?;
@@ -156,8 +155,7 @@ fn sweep_over(session: &Session<'_>, writer: &mut StudyWriter, stage: &Stage, sw
     if writer.has("sweep", &key, sweep.len()) {
         return Ok(());
     }
-    let target = target(session, stage);
-    let reference = session.reference(&target)?;
+    let (target, reference) = session.reference(&Target::whole(stage).thinned(session.pixels(PIXELS)))?;
     let tried = session.trial(&target, &reference.truth, &sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
     let row = |(strategy, one): (&Configured, &Tried)| {
         let passes = one.summary.passes;
@@ -274,21 +272,11 @@ impl Tried {
 fn notes(session: &Session<'_>) -> String {
     format!(
         "{} runs, each from nothing in one block of passes on one thread (none of more than {} s of counted work); CPU s: of the whole \
-         frame, set-up and learning too; relMSE at {} of its receivers (fewer among 100,000 lights and more). `oracle` has no time.",
+         frame, set-up and learning too; relMSE at {} of its receivers (fewer among very many lights). `oracle` has no time.",
         session.options.repeats,
         session.options.seconds,
         session.pixels(PIXELS)
     )
-}
-
-/// Whole frames, and errors at fewer receivers where their truth takes a ray for each of many lights.
-fn target<'a>(session: &Session<'_>, stage: &'a Stage) -> Target<'a> {
-    let own = match stage.scene().lights().len() {
-        0..100_000 => PIXELS,
-        100_000..1_000_000 => PIXELS / 2,
-        _ => PIXELS / 4,
-    };
-    Target::whole(stage).thinned(session.pixels(own))
 }
 
 fn note(writer: &mut StudyWriter, target: &Target<'_>, reference: &Reference) -> Result<()> {
