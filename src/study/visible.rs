@@ -103,19 +103,20 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let own = [file::open(Path::new(CANYON), &smallest)?, file::open(Path::new(PLAZA), &options.overrides)?];
     let mut writer = session.open(scenes.iter().chain(&own), tables)?;
     for (table, path, lights) in &frames {
-        let frame = Frame::open(session, Path::new(path), *lights)?;
-        frame.note(&mut writer)?;
-        let few = frame.stage.scene().lights().len() <= MOST_OF_ORACLE;
+        let scene = file::open(Path::new(path), &Overrides { lights: *lights, ..options.overrides.clone() })?;
+        let few = scene.lights().len() <= MOST_OF_ORACLE;
         let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
         let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
         let mut passes = vec![1, 8, options.passes];
         passes.retain(|&n| n <= options.passes);
         passes.dedup();
+        passes.retain(|&passes| !writer.has(table, &of_passes(passes), steps.len()));
+        if passes.is_empty() {
+            continue;
+        }
+        let frame = Frame::new(session, scene)?;
+        frame.note(&mut writer)?;
         for passes in passes {
-            let key = [("passes", u64::from(passes).into())];
-            if writer.has(table, &key, steps.len()) {
-                continue;
-            }
             let found = frame.all(session, &strategies, passes)?;
             let product =
                 |name: &str| steps.iter().zip(&found).find(|((_, of), _)| of.name() == name).map(|f| f.1.product());
@@ -129,15 +130,15 @@ fn run(session: &Session<'_>) -> Result<Study> {
                 cells.extend([ratio(classic).into(), ratio(tree).into()]);
                 rows.push(cells);
             }
-            writer.put(table, &key, rows)?;
+            writer.put(table, &of_passes(passes), rows)?;
         }
     }
-    for path in &swept {
-        let frame = Frame::open(session, path, None)?;
-        let key = [("scene", frame.stage.scene().name().into())];
+    for scene in scenes {
+        let key = [("scene", scene.name().into())];
         if writer.has("sweep", &key, sweep.len()) {
             continue;
         }
+        let frame = Frame::new(session, scene)?;
         let found = frame.all(session, &sweep.iter().collect::<Vec<_>>(), options.passes)?;
         let mut rows = Vec::new();
         for (strategy, one) in sweep.iter().zip(&found) {
@@ -149,6 +150,11 @@ fn run(session: &Session<'_>) -> Result<Study> {
         writer.put("sweep", &key, rows)?;
     }
     session.finish(writer)
+}
+
+/// What tells the rows of a table that were measured together.
+fn of_passes(passes: u32) -> [(&'static str, Cell); 1] {
+    [("passes", u64::from(passes).into())]
 }
 
 fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
@@ -250,9 +256,8 @@ struct One {
 }
 
 impl Frame {
-    fn open(session: &Session<'_>, path: &Path, lights: Option<u64>) -> Result<Self> {
+    fn new(session: &Session<'_>, scene: Scene) -> Result<Self> {
         let options = session.options;
-        let scene = file::open(path, &Overrides { lights, ..options.overrides.clone() })?;
         let pixels = match scene.lights().len() {
             0..100_000 => options.pixels,
             100_000..1_000_000 => options.pixels.min(256),
