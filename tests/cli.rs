@@ -50,10 +50,10 @@ fn studies_are_named_listed_and_run() {
         command.args(small.split(' ')).arg(&out).arg("--cache").arg(&cache);
         command
     };
-    let printed = contains("growth with the number of lights").and(contains("power"));
-    study().assert().success().stdout(printed.clone()).stderr(contains("rows go to"));
+    let printed = || contains("growth with the number of lights").and(contains("power"));
+    study().assert().success().stdout(printed()).stderr(contains("rows go to"));
     let written = std::fs::read(out.join("study.json")).expect("a record");
-    study().assert().success().stdout(printed);
+    study().assert().success().stdout(printed());
     assert!(written == std::fs::read(out.join("study.json")).expect("a record"), "it was measured again");
     study().args(["--seed", "2"]).assert().code(2).stderr(contains("never overwritten"));
     let page = folder.path().join("README.md");

@@ -136,7 +136,6 @@ impl Session {
     /// Begins the comparison that `record` describes, or goes on with it where it was begun; one that has been finished
     /// is shown, and there is nothing to do.
     fn open(arguments: &Arguments, mut record: RunRecord, scenes: &[Scene]) -> anyhow::Result<Option<Self>> {
-        std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
         let folder = match &arguments.out {
             Some(folder) => ResultFolder::open(folder, Kind::Comparison)?,
             None => {
@@ -145,6 +144,7 @@ impl Session {
                 ResultFolder::create(Path::new("results"), date, &names, revision, Kind::Comparison)?
             }
         };
+        std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
         let films = Films::of(folder.path(), &record.plan);
         match store::begun(folder.path(), &record)? {
             Some(earlier) if earlier.finished => {
