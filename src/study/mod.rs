@@ -26,7 +26,7 @@ use crate::measure::environment;
 use crate::measure::errors::Truth;
 use crate::measure::observer::Observer;
 use crate::measure::plan::Budget;
-use crate::measure::reference::{Reference, scene_hash};
+use crate::measure::reference::{Reference, Wanted, scene_hash};
 use crate::measure::target::Target;
 use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
 use crate::record::study_store::StudyWriter;
@@ -228,6 +228,6 @@ impl Session<'_> {
     /// measured receivers as [`REFERENCE_S`] allow, and which those are.
     fn reference<'t>(&self, target: &Target<'t>) -> Result<(Target<'t>, Reference)> {
         // Errors lie above 1e-3, and are taken about two halves whose own noise cancels.
-        Reference::bounded(target, 1e-4, REFERENCE_S, &self.options.cache, self.watch)
+        Reference::bounded(target, Wanted { work_s: REFERENCE_S, ..Wanted::new(1e-4) }, &self.options.cache, self.watch)
     }
 }
