@@ -130,7 +130,7 @@ impl Tried {
     /// A figure made of the means of relMSE and another value over the runs at a number of passes.
     pub(super) fn of_means(&self, passes: u32, values: [fn(&Row) -> f64; 2], of: impl Fn([f64; 2]) -> f64) -> Figure {
         let rows = self.at(passes);
-        of_means(values.map(|value| rows.iter().map(|row| value(row)).collect()), tail(&rows), of)
+        of_means(&values.map(|value| rows.iter().map(|row| value(row)).collect()), tail(&rows), of)
     }
 
     /// Its runs at a number of passes; empty where there are none.
@@ -156,7 +156,7 @@ pub(super) fn mean(rows: &[&Row], value: fn(&Row) -> f64) -> Figure {
 }
 
 /// A positive figure made of the means of several values over the same runs; `tail` is that of the first.
-pub(super) fn of_means<const N: usize>(values: [Vec<f64>; N], tail: Tail, of: impl Fn([f64; N]) -> f64) -> Figure {
+pub(super) fn of_means<const N: usize>(values: &[Vec<f64>; N], tail: Tail, of: impl Fn([f64; N]) -> f64) -> Figure {
     let mean = |values: &Vec<f64>, without: Option<usize>| {
         let kept = values.iter().enumerate().filter(|(run, _)| Some(*run) != without);
         kept.map(|(_, value)| value).sum::<f64>() / (values.len() - usize::from(without.is_some())) as f64

@@ -76,7 +76,7 @@ impl Measured {
     /// relMSE x CPU seconds at a receiver.
     pub(super) fn cost_s(&self) -> Interval {
         let (errors, seconds) = self.runs.iter().map(|(errors, seconds)| (errors.rel_mse, *seconds)).unzip();
-        of_means([errors, seconds], Self::tail(&self.runs), |[error, seconds]| error * seconds).interval()
+        of_means(&[errors, seconds], Self::tail(&self.runs), |[error, seconds]| error * seconds).interval()
     }
 }
 
