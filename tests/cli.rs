@@ -50,10 +50,10 @@ fn studies_are_named_listed_and_run() {
         command.args(small.split(' ')).arg(&out).arg("--cache").arg(&cache);
         command
     };
-    let printed = contains("growth with the number of lights").and(contains("power"));
-    study().assert().success().stdout(printed.clone()).stderr(contains("rows go to"));
+    let printed = || contains("growth with the number of lights").and(contains("power"));
+    study().assert().success().stdout(printed()).stderr(contains("rows go to"));
     let written = std::fs::read(out.join("study.json")).expect("a record");
-    study().assert().success().stdout(printed);
+    study().assert().success().stdout(printed());
     assert!(written == std::fs::read(out.join("study.json")).expect("a record"), "it was measured again");
     study().args(["--seed", "2"]).assert().code(2).stderr(contains("never overwritten"));
     let page = folder.path().join("README.md");
@@ -255,12 +255,22 @@ fn verify_prints_statistics_and_takes_a_seed_from_the_clock() {
 }
 
 #[test]
+fn verify_shows_one_check_as_the_gate_makes_it() {
+    let mut command = citylights();
+    command.args(["verify", "--gate", "--seed", "5", "--strategies", "power", "--only", "arrival-order"]);
+    let of_power = contains("power").and(contains("arrival-order")).and(contains("weights").not());
+    command.assert().success().stdout(of_power.and(contains("every check passed")));
+}
+
+#[test]
 fn verify_without_a_scene_looks_at_the_generated_ones() {
     let mut command = citylights();
     command.args(["verify", "-q", "-s", "uniform,influence-tail", "--draws", "1000", "--receivers", "4"]);
     command.assert().success().stdout(contains("no-lights").and(contains("sixteen")).and(contains("giant")));
     refused("verify --level 2", &["between 0 and 1"]);
     refused("verify --seed 3 --fresh-seed", &["--fresh-seed"]);
+    refused("verify --only wieghts", &["weights"]);
+    refused("verify --gate --draws 1000", &["--gate"]);
 }
 
 #[cfg(unix)]

@@ -7,6 +7,7 @@ use citylights::base::random::RunKey;
 use citylights::measure::clock::{Clock, Cpu, Spent};
 use citylights::measure::compare::{Compared, Options, compare};
 use citylights::measure::engine::{Block, Engine};
+use citylights::measure::films::Films;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
@@ -57,14 +58,17 @@ fn compared(clock: &dyn Clock, seed: u64, workers: usize) -> (SceneRecord, Vec<R
     let folder = tempfile::tempdir().expect("a folder");
     let strategies = parse_list("all,uniform,power,intensity,light-tree,resampled,influence").expect("a list");
     let engine = Engine { clock, workers, seed };
+    let films = Films::of(folder.path(), "engine");
     let options = Options {
+        typed: "made.toml",
         strategies: &strategies,
         budget: Budget { usual_passes: 16, most_passes: 64, work_s: 0.05 },
         repeats: 4,
         seed,
         engine: &engine,
+        reference_work_s: 10.0,
         cache: folder.path(),
-        folder: folder.path(),
+        films: &films,
     };
     let mut writer = RowWriter::create(folder.path()).expect("begun");
     let Compared { scene, mut rows, .. } =

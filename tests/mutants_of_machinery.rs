@@ -364,7 +364,9 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
+    use citylights::measure::clock::Cpu;
     use citylights::measure::compare::{Compared, Options, compare};
+    use citylights::measure::engine::Engine;
     use citylights::measure::films::Films;
     use citylights::measure::observer::Unobserved;
     use citylights::measure::plan::Budget;
@@ -372,7 +374,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let folder = tempfile::tempdir().expect("a folder");
     let stage = stage(sixteen());
     let strategies = ["right", "descent"].map(mutant);
-    let budget = Budget { usual_passes: 4, most_passes: 4, seconds: 1.0 };
+    let budget = Budget::up_to(4, 1.0);
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &Films::of(folder, "mutants");
     let engine = &Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
@@ -396,4 +398,16 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let line = |text: &str| text.contains("failed check `weights` at pixel ") && text.ends_with(shows);
     assert!(error(1).is_some_and(|text| line(text) && !text.contains('\n')), "{:?}", error(1));
     assert!(rows.iter().all(|row| row.strategy != "descent"), "a wrong strategy was timed");
+}
+
+#[test]
+fn the_command_of_the_gate_shows_what_the_gate_saw() {
+    use citylights::measure::gate::{Gate, options};
+    let stage = stage(sixteen());
+    let error = Gate::new(&stage, "sixteen.toml", 17, 3).pass(&mutant("descent")).expect_err("a wrong strategy");
+    // What `verify --gate --seed 3 --strategies descent` does: of one strategy, not of seventeen.
+    let checks = Verifier::new(&stage, options(1, 3)).verify(&mutant("descent")).expect("a sampler");
+    let shown = checks.iter().find(|check| !check.passed).expect("a failure");
+    let line = format!("failed check `{}`{}: statistic {:.3e}", shown.name, shown.place(), shown.statistic);
+    assert!(error.to_string().starts_with(&line), "{error}\n{shown}");
 }

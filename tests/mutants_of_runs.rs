@@ -173,7 +173,8 @@ fn failed(entries: &[Entry], name: &str, stage: &Stage) -> Vec<&'static str> {
 fn runs_that_repeat_one_another_are_found() {
     let stage = stage(sixteen());
     assert_eq!(failed(MUTANTS, "pairs", &stage), ["another-seed"]);
-    assert_eq!(failed(MUTANTS, "fours", &stage), ["another-seed"]);
+    // So few batches that differ fail the statistics as well.
+    assert!(failed(MUTANTS, "fours", &stage).contains(&"another-seed"));
 }
 
 #[test]
@@ -202,7 +203,7 @@ fn no_strategy_repeats_itself_or_asks_who_arrived_first() {
         for entry in STRATEGIES {
             let failed = failed(STRATEGIES, entry.info().name, &stage);
             let ours = |name: &&str| ["another-seed", "arrival-order"].contains(name);
-            assert!(!failed.iter().any(|name| ours(&name)), "{}: {failed:?}", entry.info().name);
+            assert!(!failed.iter().any(ours), "{}: {failed:?}", entry.info().name);
         }
     }
 }

@@ -4,11 +4,11 @@
 
 mod common;
 
+use citylights::scene::Parts;
 use citylights::scene::light::LightId;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::recipe::{Overrides, load};
-use citylights::scene::{Parts, Scene};
 use citylights::verify::Check;
 use citylights::verify::independent::{Own, Path, independent};
 use citylights::visibility::offset::Offset;

@@ -6,12 +6,14 @@ mod common;
 #[path = "common/runs.rs"]
 mod runs;
 
+use citylights::measure::clock::Cpu;
 use citylights::measure::compare::{Compared, Options as Comparison, compare};
+use citylights::measure::engine::Engine;
 use citylights::measure::films::Films;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
-use citylights::record::Claim;
 use citylights::record::store::RowWriter;
+use citylights::record::{Claim, Interval};
 use citylights::strategy::registry::{parse, parse_list};
 use citylights::verify::{Options, Truth, Verifier};
 use common::{expected, ground, point, sixteen, stage};
@@ -67,27 +69,32 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let stage = stage(sixteen());
     let folder = tempfile::tempdir().expect("a folder");
     let strategies = parse_list("all,power,oracle,intensity,restir").expect("a list");
+    let films = Films::of(folder.path(), "oracle");
+    let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
     let options = Comparison {
-        typed: "sixteen.toml",
+        typed: "made.toml",
         strategies: &strategies,
-        budget: Budget { usual_passes: 16, most_passes: 64, seconds: 5.0 },
-        repeats: 4,
+        budget: Budget::up_to(16, 5.0),
+        repeats: 8,
         seed: 1,
-        threads: 2,
+        engine: &engine,
+        reference_work_s: 30.0,
         cache: folder.path(),
-        films: &Films::of(folder.path(), "oracle"),
+        films: &films,
     };
     let mut writer = RowWriter::create(folder.path()).expect("begun");
     let Compared { scene: record, rows, .. } =
         compare(&stage, "made", &options, &[], &mut writer, &Unobserved).expect("compared");
     let of = |name: &str| record.summaries.iter().find(|s| s.strategy == name).expect(name);
-    let [power, intensity, restir] = ["power", "intensity", "restir"].map(|name| of(name).times_oracle.expect(name));
-    println!("x oracle: power {power:.1}, intensity {intensity:.2}, restir {restir:.2}");
+    let ratios = ["power", "intensity", "restir"].map(|name| of(name).times_oracle.expect(name));
+    println!("x oracle of power, intensity, restir: {ratios:?}");
+    let [power, intensity, restir] = ratios.map(|ratio| ratio.mean);
     assert!(power > 3.0 * intensity && intensity > 1.0 && restir < power, "{power}, {intensity}, {restir}");
+    assert!(ratios.iter().all(|ratio| ratio.low < ratio.mean && ratio.mean < ratio.high), "{ratios:?}");
     let oracle = of("oracle");
-    assert!(oracle.claim == Claim::Oracle && oracle.times_oracle == Some(1.0), "{oracle:?}");
-    assert!(oracle.cpu_s.is_nan() && oracle.variance_seconds.is_nan() && oracle.counts.choosing_rays > 0, "{oracle:?}");
-    assert!(oracle.receivers.is_some_and(|n| n <= 256) && of("power").receivers.is_none());
+    assert!(oracle.claim == Claim::Oracle && oracle.times_oracle == Some(Interval::certain(1.0)), "{oracle:?}");
+    assert!(oracle.cpu_s.mean.is_nan() && oracle.variance_seconds.mean.is_nan(), "the oracle is not timed");
+    assert!(oracle.counts.choosing_rays > 0 && oracle.receivers.is_some() && of("power").receivers.is_none());
     assert!(rows.iter().all(|row| row.strategy != "oracle"), "the oracle is not timed");
     assert_eq!(of("all").times_oracle, None);
 }

@@ -235,7 +235,7 @@ fn record() -> (RunRecord, Vec<Row>) {
             cached: true,
             subset: false,
         },
-        shared: vec![SharedWork { what: "occluders".to_owned(), cpu_s: 0.031 }],
+        shared: vec![SharedWork { what: "occluders".to_owned(), wall_s: 0.031 }],
         errors: vec![0.1, 0.01, 0.001],
         times_s: vec![0.03, 0.3, 1.0],
         ranked_by: 1,

@@ -207,7 +207,7 @@ fn records_of_another_schema_or_cut_short_are_refused() {
     let whole = fs::read_to_string(&path).expect("read");
     for (from, to, expected) in [
         ("\"schema\": 1", "\"schema\": 2", "`schema`: is 2, this program reads 1"),
-        ("\"seed\": 1", "\"sed\": 1", "run.json:7: unknown field `sed`"),
+        ("\"seed\": 1", "\"sed\": 1", "run.json:8: unknown field `sed`"),
         ("\"inf\"", "\"fast\"", "expected a number, \"inf\", \"-inf\" or \"nan\""),
     ] {
         fs::write(&path, whole.replacen(from, to, 1)).expect("written");

@@ -241,26 +241,8 @@ fn a_section_points_to_the_plots_of_its_folder() {
     }
 }
 
-/// A street between two facades with lamps and a sign, in a folder of its own.
-const STREET: &str = r#"
-name = "street"
-seed = 1
-version = 1
-ev100 = 3.0
-camera = { position = [0, -12, 3], target = [0, 0, 2], resolution = [24, 16] }
-ground = { size = 40, material = "paving" }
-materials.paving = { albedo = [0.3, 0.3, 0.3], street = true }
-box = [
-    { low = [-12, -15, 0], high = [-6, 15, 8], material = "plaster" },
-    { low = [6, -15, 0], high = [12, 15, 8], material = "brick" },
-]
-light = [
-    { kind = "point", position = [0, -8, 6], intensity = 200 },
-    { kind = "point", position = [0, 0, 6], intensity = 200 },
-    { kind = "point", position = [0, 8, 6], intensity = 200 },
-    { kind = "spot", position = [-5, 4, 7], target = [0, 4, 0], inner = 20, outer = 60, flux = 4000, kelvin = 3000 },
-]
-"#;
+/// A street between two facades, in a folder of its own.
+const STREET: &str = include_str!("data/street.toml");
 
 fn options(folder: &Path, strategies: &str) -> Options {
     Options {

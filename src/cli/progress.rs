@@ -5,12 +5,12 @@ use crate::measure::observer::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Shows progress on stderr and stops long work on Ctrl-C: the first asks it to stop, a second ends the process.
 pub(super) struct Progress {
     stopped: Arc<AtomicBool>,
-    bar: Mutex<ProgressBar>,
+    stage: Mutex<Shown>,
     scene: Mutex<String>,
 }
 
@@ -24,7 +24,7 @@ impl Progress {
             }
             say("\nstopping; what is finished is kept (once more to stop at once)");
         })?;
-        Ok(Self { stopped, bar: Mutex::new(ProgressBar::hidden()), scene: Mutex::default() })
+        Ok(Self { stopped, stage: Mutex::new(Shown::Bar(ProgressBar::hidden())), scene: Mutex::default() })
     }
 
     /// Names the scene in front of what follows.
@@ -34,39 +34,119 @@ impl Progress {
         }
     }
 
-    fn with(&self, act: impl FnOnce(&mut ProgressBar)) {
-        if let Ok(mut bar) = self.bar.lock() {
-            act(&mut bar);
+    fn with(&self, act: impl FnOnce(&mut Shown)) {
+        if let Ok(mut stage) = self.stage.lock() {
+            act(&mut stage);
         }
     }
 }
 
 impl Observer for Progress {
     fn begin(&self, what: &str, total: u64) {
-        let scene = self.scene.lock().map(|scene| scene.clone()).unwrap_or_default();
-        self.with(|bar| {
-            *bar = ProgressBar::new(total);
-            if bar.is_hidden() {
-                // No terminal: a line a stage.
-                say(&format!("{scene}: {what}, {total} steps"));
-                return;
-            }
-            let style = ProgressStyle::with_template("{prefix:>24} {bar:40} {pos}/{len}  {elapsed} (about {eta} left)");
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.set_prefix(format!("{scene}: {what}"));
-            bar.enable_steady_tick(Duration::from_millis(200));
-        });
+        let what = self.scene.lock().map(|scene| format!("{scene}: {what}")).unwrap_or_default();
+        let bar = ProgressBar::new(total);
+        if bar.is_hidden() {
+            say(&format!("{what}, {total} steps"));
+            self.with(|stage| *stage = Shown::Log(Log::new(what, total), Instant::now()));
+            return;
+        }
+        let style = ProgressStyle::with_template("{prefix:>24} {bar:40} {pos}/{len}  {elapsed} (about {eta} left)");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(what);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        self.with(|stage| *stage = Shown::Bar(bar));
     }
 
     fn advance(&self, steps: u64) {
-        self.with(|bar| bar.inc(steps));
+        self.with(|stage| match stage {
+            Shown::Bar(bar) => bar.inc(steps),
+            Shown::Log(log, begun) => {
+                if let Some(line) = log.advance(steps, begun.elapsed()) {
+                    say(&line);
+                }
+            }
+        });
     }
 
     fn end(&self) {
-        self.with(|bar| bar.finish_and_clear());
+        self.with(|stage| {
+            if let Shown::Bar(bar) = stage {
+                bar.finish_and_clear();
+            }
+        });
     }
 
     fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
+    }
+}
+
+/// How a stage is shown: on a terminal as a bar, else as lines.
+enum Shown {
+    Bar(ProgressBar),
+    Log(Log, Instant),
+}
+
+/// A stage told in lines: one now and then, never so many that they fill a log.
+struct Log {
+    what: String,
+    total: u64,
+    done: u64,
+    /// When the next line is due, since the stage began.
+    next: Duration,
+}
+
+/// Between two lines, at least.
+const INTERVAL: Duration = Duration::from_secs(10);
+
+/// Lines of a stage, about, if it is longer than that many intervals.
+const LINES: u32 = 20;
+
+impl Log {
+    fn new(what: String, total: u64) -> Self {
+        Self { what, total, done: 0, next: INTERVAL }
+    }
+
+    /// A line, if one is due so long after the beginning.
+    fn advance(&mut self, steps: u64, elapsed: Duration) -> Option<String> {
+        self.done += steps;
+        if elapsed < self.next || self.done == 0 || self.done >= self.total {
+            return None;
+        }
+        let whole = elapsed.mul_f64(self.total as f64 / self.done as f64);
+        self.next = elapsed + INTERVAL.max(whole / LINES);
+        let Self { what, done, total, .. } = self;
+        let left = (whole - elapsed).as_secs();
+        Some(format!("{what}, {done} of {total} after {} s, about {left} s left", elapsed.as_secs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The lines of a stage of `total` steps that take so many seconds each.
+    fn lines(total: u64, step_s: f64) -> Vec<String> {
+        let mut log = Log::new("town: runs".into(), total);
+        (1..=total).filter_map(|i| log.advance(1, Duration::from_secs_f64(step_s * i as f64))).collect()
+    }
+
+    #[test]
+    fn a_log_says_every_ten_seconds_what_is_left() {
+        assert_eq!(lines(5, 1.0), Vec::<String>::new(), "short stages are no news");
+        assert_eq!(
+            lines(35, 1.0),
+            [
+                "town: runs, 10 of 35 after 10 s, about 25 s left",
+                "town: runs, 20 of 35 after 20 s, about 15 s left",
+                "town: runs, 30 of 35 after 30 s, about 5 s left"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_log_of_hours_has_few_lines() {
+        let hours = lines(10_000, 3.6);
+        assert!((15..=21).contains(&hours.len()), "{} lines", hours.len());
     }
 }

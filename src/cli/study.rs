@@ -35,8 +35,8 @@ pub(super) struct Arguments {
     /// (`offsets`)
     #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
     receivers: u32,
-    /// Receivers of the frame that errors are taken at: by default 512, fewer among 100,000 lights and more, and of
-    /// `scaling` more
+    /// Most receivers of the frame that errors are taken at: by default 512, and of `scaling` all; fewer where their exact
+    /// radiance takes too much work
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pixels: Option<u32>,
     /// Most passes of a run

@@ -10,13 +10,13 @@ use super::headline::{self, Entry, Headline};
 use super::observer::Observer;
 use super::oracle;
 use super::plan::{self, Budget, Pilot};
-use super::reference::{Reference, scene_hash};
+use super::reference::{Reference, Wanted, scene_hash};
 use super::summary::{self, bias};
 use super::target::Target;
 use crate::base::error::Result;
 use crate::base::statistics::sidak;
 use crate::record::store::RowWriter;
-use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, Summary};
+use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Summary};
 use crate::strategy::Role;
 use crate::strategy::registry::Configured;
 use crate::visibility::stage::Stage;
@@ -73,8 +73,8 @@ pub fn compare<'a>(
         pilot.map_or_else(Vec::new, |pilot| pilot.ladder(options.budget, options.repeats))
     };
     let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
-    let accuracy = accuracy(options, &pilots, &ladders);
-    let (target, reference) = Reference::bounded(&frame, accuracy, options.reference_work_s, options.cache, watch)?;
+    let wanted = Wanted { work_s: options.reference_work_s, ..Wanted::new(accuracy(options, &pilots, &ladders)) };
+    let (target, reference) = Reference::bounded(&frame, wanted, options.cache, watch)?;
 
     let strategies: Vec<&Configured> = options.strategies.iter().collect();
     let experiment = Experiment {
@@ -103,7 +103,7 @@ pub fn compare<'a>(
     let headline = headline::settle(&mut entries.collect::<Vec<_>>());
     oracle::settle(&target, &reference.truth, options, &runs, &mut summaries, watch)?;
 
-    let notes = notes(stage, account.stray_share());
+    let notes = notes(&target, &reference, wanted, account.stray_share());
     let scene = record(&target, file, &reference, &headline, notes, summaries);
     let rows = runs.into_iter().flat_map(|runs| runs.rows).collect();
     Ok(Compared { scene, rows, target, truth: reference.truth })
@@ -114,7 +114,7 @@ type Trial = Result<Pilot>;
 
 fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Trial>>> {
     let few = target.thinned(plan::RECEIVERS);
-    let rough = Reference::compute(&few, 1.0, options.cache, watch)?.truth;
+    let rough = Reference::compute(&few, 1e-3, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
     let gate = Gate::new(target.stage, options.typed, options.strategies.len(), options.seed);
     let mut pilots = Vec::new();
@@ -168,8 +168,10 @@ fn hold_to_claims(options: &Options<'_>, summaries: &mut [Summary], truth: &Trut
 /// Work beyond the workers' clocks that is worth a word, as a share of what the process spent.
 const STRAY: f64 = 0.1;
 
-fn notes(stage: &Stage, stray: f64) -> Vec<String> {
+fn notes(target: &Target<'_>, reference: &Reference, wanted: Wanted, stray: f64) -> Vec<String> {
+    let stage = target.stage;
     let mut notes = stage.scene().notes().to_vec();
+    notes.extend(reference.notes(&target, wanted));
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
     }
@@ -220,7 +222,11 @@ fn record(
             cached: reference.cached,
             subset: target.is_subset(),
         },
-        shared: Vec::new(),
+        shared: stage
+            .shared()
+            .iter()
+            .map(|part| SharedWork { what: part.part.to_owned(), wall_s: part.wall_s })
+            .collect(),
         errors: headline::ERRORS.to_vec(),
         times_s: headline.times_s.clone(),
         ranked_by: headline.ranked_by as u32,

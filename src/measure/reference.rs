@@ -40,6 +40,24 @@ pub struct Reference {
     pub cached: bool,
 }
 
+/// How exact an image must be, and what that may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Its own relMSE, at most.
+    pub own_rel_mse: f64,
+    /// Most counted work, in nominal CPU seconds: see [`RAY_S`].
+    pub work_s: f64,
+    /// Receivers that are measured even where that makes the image less exact.
+    pub fewest: usize,
+}
+
+impl Wanted {
+    /// This exact, within [`WORK_S`], at [`FEWEST`] receivers at least.
+    pub fn new(own_rel_mse: f64) -> Self {
+        Self { own_rel_mse, work_s: WORK_S, fewest: FEWEST }
+    }
+}
+
 /// Nominal CPU seconds of a shadow ray to a point of a light, all around it included.
 pub const RAY_S: f64 = 230e-9;
 
@@ -62,53 +80,78 @@ impl Reference {
     /// The exact image of a target, from `cache` where it is there, until its own relMSE is at most `own_rel_mse`,
     /// however long that takes.
     pub fn compute(target: &Target<'_>, own_rel_mse: f64, cache: &Path, watch: &dyn Observer) -> Result<Self> {
-        Ok(Self::bounded(target, own_rel_mse, f64::INFINITY, cache, watch)?.1)
+        let wanted = Wanted { work_s: f64::INFINITY, ..Wanted::new(own_rel_mse) };
+        Ok(Self::bounded(target, wanted, cache, watch)?.1)
     }
 
-    /// The exact image of a target, or of as many of its measured receivers as `work_s` nominal CPU seconds allow, and
-    /// which those are.
+    /// The exact image of a target, or of as many of its measured receivers as the work allows, and which those are.
     ///
     /// Few receivers say which price of a ray leads to the relMSE, and what a receiver then takes; how many can be
     /// measured follows. Work is counted, not timed: every machine comes to the same receivers.
     pub fn bounded<'a>(
         target: &Target<'a>,
-        own_rel_mse: f64,
-        work_s: f64,
+        wanted: Wanted,
         cache: &Path,
         watch: &dyn Observer,
     ) -> Result<(Target<'a>, Self)> {
-        let mut measured = target.thinned(FEWEST);
+        let every = target.places.len();
+        let few = target.thinned(FEWEST);
+        let fewest = wanted.fewest.clamp(few.places.len(), every);
+        let mut measured = few.clone();
         let mut step = Step { halvings: 0, relative: RelMse::default() };
         let mut earlier = None;
         loop {
             let reference = Self::level(&measured, step, cache, watch)?;
-            let receivers = measured.places.len().max(1) as f64;
-            let each = reference.work_s / receivers;
+            let count = measured.places.len();
+            // Of no receivers, nothing follows.
+            let each = reference.work_s / count.max(1) as f64;
             let reference = reference.after(earlier);
-            let own = reference.truth.own_rel_mse();
-            let left = work_s - reference.work_s;
-            let all = measured.places.len() == target.places.len();
-            // Few receivers say what all will come to only about.
-            let missing = own / if all { own_rel_mse } else { ROOM * own_rel_mse };
+            let left = wanted.work_s - reference.work_s;
+            // Few receivers say only about what all will come to.
+            let room = if count < every { ROOM } else { 1.0 };
+            let missing = reference.truth.own_rel_mse() / (room * wanted.own_rel_mse);
             if missing > 1.0 {
-                let most = step.affordable(left / receivers / each);
-                let wanted = step.refined(missing, own_rel_mse, &reference);
-                // More receivers than the fewest are not sampled twice for a part of what is missing.
-                let next = wanted.halvings.min(most);
-                let worth = next == wanted.halvings || measured.places.len() <= FEWEST;
-                if next <= step.halvings || !worth {
-                    return Ok((measured, reference));
+                let finer = step.finer(missing, wanted.own_rel_mse, &reference);
+                let on_trial = count == few.places.len();
+                let receivers = if on_trial { fewest } else { count };
+                let halvings = finer.halvings.min(step.affordable(left / (receivers as f64 * each)));
+                // Many receivers are not sampled anew for a part of what is missing.
+                let enough = halvings == finer.halvings || on_trial;
+                if halvings > step.halvings && enough {
+                    (step, earlier) = (Step { halvings, ..finer }, Some(reference));
+                    continue;
                 }
-                step = Step { halvings: next, ..wanted };
-            } else {
-                let affordable = target.thinned((left / each).min(target.places.len() as f64) as usize);
-                if affordable.places.len() <= measured.places.len() {
-                    return Ok((measured, reference));
-                }
-                measured = affordable;
             }
-            earlier = Some(reference);
+            let affordable = ((left / each) as usize).clamp(fewest, every);
+            if affordable <= count || missing > 1.0 && fewest <= count {
+                return Ok((measured, reference));
+            }
+            (measured, earlier) = (target.thinned(affordable), Some(reference));
         }
+    }
+
+    /// What a reader must know of it: whether the bound of work had a say, and in what.
+    pub fn notes(&self, target: &Target<'_>, wanted: Wanted) -> Vec<String> {
+        let Target { places, frame, .. } = target;
+        let bound = format!("{:.0} nominal CPU s (--reference-work)", wanted.work_s);
+        let mut notes = Vec::new();
+        if target.is_subset() {
+            let (some, all) = (places.len(), frame.len());
+            notes.push(format!(
+                "errors are taken at {some} of {all} receivers, spread over the image: with more, the reference would take more than {bound}"
+            ));
+        }
+        let own = self.truth.own_rel_mse();
+        if own > wanted.own_rel_mse {
+            notes.push(format!(
+                "the reference's own relMSE is {own:.1e} where {:.1e} was wanted: less would take more than {bound}",
+                wanted.own_rel_mse
+            ));
+        }
+        if self.work_s > wanted.work_s {
+            notes.push(format!("the reference took {:.0} nominal CPU s: one ray a light is its least", self.work_s));
+        }
+        notes
     }
 
     /// The image at one price of a ray.
@@ -191,7 +234,7 @@ impl Step {
     }
 
     /// The step that takes the relMSE down by `missing`: it falls as the price to the power `FALL / (FALL + 1)`.
-    fn refined(self, missing: f64, own_rel_mse: f64, found: &Reference) -> Self {
+    fn finer(self, missing: f64, own_rel_mse: f64, found: &Reference) -> Self {
         if self.halvings == 0 {
             // At any price the image's relMSE is that times the rays of a receiver, over FALL.
             let rays = found.rays as f64 / found.truth.mean().len() as f64;
@@ -205,7 +248,7 @@ impl Step {
     /// The most halvings, if a receiver may take so many times as much work as it did: rays grow as the price to the
     /// power `-1 / (FALL + 1)`, at most.
     fn affordable(self, times: f64) -> u32 {
-        let halvings = (times.log2() * (FALL + 1.0)).floor();
+        let halvings = (times.max(0.0).log2() * (FALL + 1.0)).floor();
         // A negative number becomes 0.
         self.halvings + halvings.min(f64::from(FINEST)) as u32
     }

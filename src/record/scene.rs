@@ -22,7 +22,7 @@ pub struct ReferenceRecord {
     pub cpu_s: f64,
     /// Whether it came from the cache.
     pub cached: bool,
-    /// Whether it covers a subset of the receivers only, so that its work stays within its bound.
+    /// Whether it covers a stratified subset of the receivers, `pixels_measured` of them, rather than all.
     pub subset: bool,
 }
 
@@ -32,9 +32,9 @@ pub struct ReferenceRecord {
 pub struct SharedWork {
     /// What was done: "occluders".
     pub what: String,
-    /// CPU seconds that it took.
+    /// Wall seconds that it took, on all threads of the run.
     #[serde(with = "number")]
-    pub cpu_s: f64,
+    pub wall_s: f64,
 }
 
 /// One scene and all strategies on it.

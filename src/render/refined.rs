@@ -5,8 +5,8 @@
 //! for all receivers and lights, the weighted squared error that a shadow ray must at least take away, then decides
 //! every number of points: at the optimum all rays are worth the same.
 //!
-//! The looks have random numbers of their own and are thrown away, so that what they say of the number of points
-//! biases nothing.
+//! Looks have random numbers of their own and are thrown away, so that what they say of the number of points biases
+//! nothing.
 
 use super::exact::{Exact, deltas, grid, grid_side, stratified};
 use crate::base::random::Stream;
@@ -26,116 +26,85 @@ pub struct Price {
     pub a_ray: f64,
 }
 
-/// What a look at all lights from one receiver shows.
-pub struct Look<'a> {
-    /// Point, spot and directional lights: the sum is exact already.
-    sum: DVec3,
-    triangles: Vec<Seen<'a>>,
-    /// Shadow rays cast.
-    pub rays: u64,
-}
-
-/// A triangle that can add something.
-struct Seen<'a> {
-    light: &'a Light,
-    mean: DVec3,
-    /// Variance of the mean of a grid of `n` points, times `n^FALL`.
-    roughness: DVec3,
-}
-
-/// Points a receiver and half of a look, on top of one a light.
-const POINTS: u32 = 64;
-
-/// The variance of the mean of a jittered grid of `n` points falls as `n^-1.5` in a penumbra, where only the cells on the
-/// shadow's edge matter, and as `n^-2` in full light.
+/// The variance of the mean of a jittered grid of `n` points falls as `n^-FALL` in a penumbra, where only the cells on the
+/// shadow's edge matter, and faster in full light.
 pub const FALL: f64 = 1.5;
 
-/// Most points along a side of a grid: 2^24 in all.
-const MOST: f64 = 4096.0;
+/// Points of a receiver's first looks, on top of one a light.
+const POINTS: u32 = 64;
 
-impl<'a> Look<'a> {
-    /// Looks from a receiver; `seed` names the random numbers.
-    pub fn new(stage: &'a Stage, at: &Receiver, seed: u64) -> Self {
-        let lights = stage.scene().lights();
-        let mut rays = 0;
-        let sum = deltas(stage, at, &mut rays);
-        let mut triangles: Vec<(&Light, f64)> = lights
-            .iter()
-            .filter(|light| light.kind() == Kind::Triangle)
-            .map(|light| (light, f64::from(importance(light, at))))
-            .collect();
-        triangles.retain(|(_, importance)| *importance > 0.0);
-        let total: f64 = triangles.iter().map(|(_, importance)| importance).sum();
-        let mut rng = Stream::keyed(&[seed, LOOKS, u64::from(at.pixel)]);
-        let seen = |(light, importance): (&'a Light, f64)| {
-            let side = grid_side(POINTS, importance / total);
-            let [(a, first), (b, second)] = [(); 2].map(|()| scan(stage, at, light, side, &mut rng, &mut rays));
-            // Two independent grids differ by twice the variance of each.
-            let variance = ((a - b) * (a - b) * 0.5).max((first + second) * 0.5);
-            Seen { light, mean: (a + b) * 0.5, roughness: variance * f64::from(side * side).powf(FALL) }
-        };
-        let triangles = triangles.into_iter().map(seen).collect();
-        Self { sum, triangles, rays }
-    }
+/// A grid is believed of grids with up to so many times as many points along a side; then a closer look is taken.
+const BELIEVED: u32 = 3;
 
-    /// Radiance of the receiver in cd/m^2, roughly.
-    pub fn mean(&self) -> DVec3 {
-        self.sum + self.triangles.iter().map(|seen| seen.mean).sum::<DVec3>()
-    }
+/// Most points along a side.
+const MOST: f64 = 2048.0;
 
-    /// What is to be expected of this receiver at a price: its relMSE and shadow rays.
-    pub fn expected(&self, price: Price) -> (f64, f64) {
-        let weight = price.relative.weight(self.mean().as_vec3());
-        let mut total = (0.0, self.rays as f64);
-        for seen in &self.triangles {
-            let rough = (seen.roughness * weight).element_sum() / 3.0;
-            let points = f64::from(side(rough, price.a_ray)).powi(2);
-            total.0 += 0.5 * rough / points.powf(FALL);
-            total.1 += 2.0 * points;
-        }
-        total
-    }
-
-    /// Estimates the triangles twice, with as many points as the price makes worth their while.
-    fn halves(&self, stage: &Stage, at: &Receiver, price: Price, seed: u64, rays: &mut u64) -> [DVec3; 2] {
-        let weight = price.relative.weight(self.mean().as_vec3());
-        [0, 1].map(|half| {
-            let mut rng = Stream::keyed(&[seed, half, u64::from(at.pixel), price.a_ray.to_bits()]);
-            let of = |seen: &Seen<'_>| {
-                let rough = (seen.roughness * weight).element_sum() / 3.0;
-                stratified(stage, at, seen.light, side(rough, price.a_ray), &mut rng, rays)
-            };
-            self.triangles.iter().map(of).sum()
-        })
-    }
-}
-
-/// The exact radiance of a receiver, with as many points on each triangle as are worth the price.
+/// The exact radiance of a receiver, with as many points on each triangle as are worth the price; `seed` names the
+/// random numbers.
 pub fn refined(stage: &Stage, at: &Receiver, price: Price, seed: u64) -> Exact {
-    let look = Look::new(stage, at, seed);
-    let mut rays = look.rays;
-    let halves = look.halves(stage, at, price, seed, &mut rays);
-    Exact { sum: look.sum, halves, rays }
+    let mut rays = 0;
+    let sum = deltas(stage, at, &mut rays);
+    let triangles = stage.scene().lights().iter().filter(|light| light.kind() == Kind::Triangle);
+    let triangles: Vec<(&Light, f64)> =
+        triangles.map(|light| (light, f64::from(importance(light, at)))).filter(|(_, most)| *most > 0.0).collect();
+    let total: f64 = triangles.iter().map(|(_, most)| most).sum();
+    let mut rng = Stream::keyed(&[seed, LOOKS, u64::from(at.pixel)]);
+    let mut look = |light, side| Look::new(stage, at, light, side, &mut rng, &mut rays);
+    let mut looks: Vec<(&Light, Look)> =
+        triangles.iter().map(|&(light, most)| (light, look(light, grid_side(POINTS, most / total)))).collect();
+    let mean = sum + looks.iter().map(|(_, look)| look.mean).sum::<DVec3>();
+    let weight = price.relative.weight(mean.as_vec3());
+    for (light, seen) in &mut looks {
+        while seen.worth(weight, price.a_ray) > BELIEVED * seen.side {
+            *seen = look(light, seen.worth(weight, price.a_ray).div_ceil(BELIEVED));
+        }
+    }
+    let halves = [0, 1].map(|half| {
+        let mut rng = Stream::keyed(&[seed, half, u64::from(at.pixel), price.a_ray.to_bits()]);
+        let one = |(light, seen): &(&Light, Look)| {
+            stratified(stage, at, light, seen.worth(weight, price.a_ray), &mut rng, &mut rays)
+        };
+        looks.iter().map(one).sum()
+    });
+    Exact { sum, halves, rays }
 }
 
 /// Names the random numbers of looks: never a half's.
 const LOOKS: u64 = u64::from_le_bytes(*b"thelooks");
 
-/// Side of the grid from which on another ray takes away less than the price: the mean of two halves of `n` points each
-/// has a variance of `rough / (2 n^FALL)` and takes `2 n` rays.
-fn side(rough: f64, price: f64) -> u32 {
-    let points = (FALL * rough / (4.0 * price)).powf(1.0 / (FALL + 1.0));
-    points.sqrt().ceil().clamp(1.0, MOST) as u32
+/// What a look at a light shows.
+struct Look {
+    /// Points along a side of its two grids.
+    side: u32,
+    mean: DVec3,
+    /// Variance of the mean of one grid.
+    variance: DVec3,
 }
 
-/// The mean contribution over a jittered grid, and its variance as far as neighbours in the grid tell.
-fn scan(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> (DVec3, DVec3) {
-    let (mut sum, mut squares, mut before) = (DVec3::ZERO, DVec3::ZERO, None);
-    grid(stage, at, light, side, rng, rays, |value| {
-        sum += value;
-        // Half the square of a difference is a variance.
-        squares += before.replace(value).map_or(DVec3::ZERO, |before| (value - before) * (value - before) * 0.5);
-    });
-    let n = f64::from(side * side);
-    (sum / n, squares / (n * (n - 1.0).max(1.0)))
+impl Look {
+    fn new(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> Self {
+        let n = f64::from(side * side);
+        let mut scan = || {
+            let (mut sum, mut squares, mut before) = (DVec3::ZERO, DVec3::ZERO, None);
+            grid(stage, at, light, side, rng, rays, |value| {
+                sum += value;
+                // Half the square of a difference is a variance.
+                squares +=
+                    before.replace(value).map_or(DVec3::ZERO, |before| (value - before) * (value - before) * 0.5);
+            });
+            (sum / n, squares / (n * (n - 1.0).max(1.0)))
+        };
+        let ((a, first), (b, second)) = (scan(), scan());
+        // Neighbours tell of an edge on the light; two grids that lie on either side of it tell of it too.
+        let variance = ((a - b) * (a - b) * 0.5).max((first + second) * 0.5);
+        Self { side, mean: (a + b) * 0.5, variance }
+    }
+
+    /// Side of the grid from which on another ray takes away less than the price: the mean of two halves of `n` points
+    /// each has half the variance of one and takes `2 n` rays.
+    fn worth(&self, weight: DVec3, price: f64) -> u32 {
+        let rough = (self.variance * weight).element_sum() / 3.0 * f64::from(self.side * self.side).powf(FALL);
+        let points = (FALL * rough / (4.0 * price)).powf(1.0 / (FALL + 1.0));
+        points.sqrt().ceil().clamp(1.0, MOST) as u32
+    }
 }

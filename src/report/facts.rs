@@ -34,8 +34,8 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
     }
     facts.push(line);
     if !scene.shared.is_empty() {
-        let shared: Vec<String> = scene.shared.iter().map(|w| format!("{} {} s", w.what, short(w.cpu_s))).collect();
-        facts.push(format!("off the clock, shared by all strategies: {}", shared.join(", ")));
+        let shared: Vec<String> = scene.shared.iter().map(|w| format!("{} {}", w.what, short(w.wall_s))).collect();
+        facts.push(format!("off the clock, shared by all strategies, wall seconds: {}", shared.join(", ")));
     }
     facts
 }

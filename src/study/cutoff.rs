@@ -76,7 +76,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     writer.note(format!(
         "Cities: street lamps alone, bare points 30 m apart, 5,000 to 9,000 lm, EV100 {EV100}; receivers by area, half on streets, half on \
          facades, which stay where they are where the buildings are taken away."
-    ));
+    ))?;
     session.finish(writer)
 }
 
@@ -175,6 +175,11 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
         let slope = if transfer == Transfer::Srgb { 12.92 } else { 1.0 };
         let curve = if transfer == Transfer::Srgb { "srgb" } else { "linear" };
         let strategy = registry::parse(&format!("influence:cutoff={steps},transfer={curve}"))?;
+        let lights = stage.scene().lights().len() as u64;
+        let key = [("lights", lights.into()), ("strategy", strategy.name().into())];
+        if writer.has("law", &key, 1) {
+            continue;
+        }
         let sampler = strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?;
         let range = Cutoff::new(stage.scene(), steps, transfer).volume(&stage.scene().lights()[0]);
         let range = range.map_or(f64::INFINITY, |volume| f64::from(volume.radius2).sqrt());
@@ -194,10 +199,11 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
         let mean = |of: usize| lost.iter().map(|lost| lost[of]).sum::<f64>() / lost.len() as f64;
         // Exposure is 1 and all is grey: luminance is displayed value.
         let closed = closed_form(range, f64::from(steps) / 255.0 / slope, plane.radius);
-        writer.row(
+        writer.put(
             "law",
-            vec![
-                (stage.scene().lights().len() as u64).into(),
+            &key,
+            vec![vec![
+                lights.into(),
                 strategy.name().into(),
                 plane.radius.into(),
                 range.into(),
@@ -206,7 +212,7 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
                 mean(1).into(),
                 closed.into(),
                 (mean(1) / closed).into(),
-            ],
+            ]],
         )?;
     }
     try_all(session, writer, OPENNESS[0].0, &stage, plane.receivers, strategies)
@@ -269,18 +275,20 @@ fn try_all(
     receivers: Vec<Receiver>,
     strategies: &[Configured],
 ) -> Result<()> {
-    session.watch.begin(&format!("{table}: {} lights", stage.scene().lights().len()), 1);
+    let lights = Cell::from(stage.scene().lights().len() as u64);
+    let key = [("lights", lights.clone())];
+    if writer.has(table, &key, strategies.len()) {
+        return Ok(());
+    }
+    session.watch.begin(&format!("{table}: the truth"), 1);
     let target = Target::of(stage, receivers).thinned(session.pixels(PIXELS));
     let sum = |at: &Receiver| exact(stage, at, 0, 0).sum.as_vec3();
     let sums: Vec<Vec3> = target.measured().par_iter().map(sum).collect();
     session.watch.end();
     let truth = Truth::new([sums.clone(), sums]);
-    for tried in session.trial(&target, &truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)? {
-        let mut row = vec![(stage.scene().lights().len() as u64).into()];
-        row.extend(bias_cells(&tried, &target));
-        writer.row(table, row)?;
-    }
-    Ok(())
+    let tried = session.trial(&target, &truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let row = |tried| std::iter::once(lights.clone()).chain(bias_cells(tried, &target)).collect();
+    writer.put(table, &key, tried.iter().map(row).collect())
 }
 
 fn bias_cells(tried: &Tried, target: &Target<'_>) -> Vec<Cell> {

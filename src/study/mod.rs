@@ -26,7 +26,7 @@ use crate::measure::environment;
 use crate::measure::errors::Truth;
 use crate::measure::observer::Observer;
 use crate::measure::plan::Budget;
-use crate::measure::reference::{Reference, scene_hash};
+use crate::measure::reference::{Reference, Wanted, scene_hash};
 use crate::measure::target::Target;
 use crate::record::study::{STUDY_SCHEMA, Study, StudyRecord, TableRecord};
 use crate::record::study_store::StudyWriter;
@@ -132,6 +132,10 @@ impl Entry {
     }
 }
 
+/// Most counted work of one reference, in nominal seconds: it takes rays for every light, so that among many lights errors
+/// are taken at fewer receivers.
+const REFERENCE_S: f64 = 100.0;
+
 /// A study being run.
 struct Session<'a> {
     entry: Entry,
@@ -220,9 +224,10 @@ impl Session<'_> {
         own.chain(variants.iter().copied()).map(registry::parse).collect()
     }
 
-    /// What the radiance of a target is, far enough below the errors that are measured against it.
-    fn reference(&self, target: &Target<'_>) -> Result<Reference> {
+    /// What the radiance of a target is, far enough below the errors that are measured against it; of as many of its
+    /// measured receivers as [`REFERENCE_S`] allow, and which those are.
+    fn reference<'t>(&self, target: &Target<'t>) -> Result<(Target<'t>, Reference)> {
         // Errors lie above 1e-3, and are taken about two halves whose own noise cancels.
-        Reference::compute(target, 1e-4, &self.options.cache, self.watch)
+        Reference::bounded(target, Wanted { work_s: REFERENCE_S, ..Wanted::new(1e-4) }, &self.options.cache, self.watch)
     }
 }

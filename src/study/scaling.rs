@@ -32,10 +32,6 @@ const FEWEST: u64 = 100;
 /// Most lights that the oracle is tried among.
 const MOST_OF_ORACLE: u64 = 10_000;
 
-/// Receivers that errors are taken at, by the number of lights from which on: heavy tails want many, and their truth takes
-/// a ray for every light.
-const PIXELS: [(u64, usize); 3] = [(1_000_000, 512), (100_000, 2_048), (0, 16_384)];
-
 /// What grows: a column of the table, what it is called, and what is written along its axis.
 const QUANTITIES: [(&str, &str, &str); 4] = [
     ("setup_cpu_s", "set-up", "CPU s of set-up"),
@@ -53,21 +49,23 @@ fn run(session: &Session<'_>) -> Result<Study> {
     };
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
-    file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
-    let mut writer = session.open([], vec![growth(session, &strategies), exponents()])?;
+    let smallest = file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
+    let mut writer = session.open([&smallest], vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
         at_size(session, &mut writer, path, &strategies, lights)?;
     }
+    let mut laws = Vec::new();
     for strategy in &strategies {
         for (column, what, _) in QUANTITIES {
             if let Some(law) = law(&writer, strategy, column) {
                 let mut row: Vec<Cell> = vec![strategy.name().into(), what.into()];
                 row.extend(cells(law.exponent));
                 row.extend([law.factor.into(), law.residual.into(), (law.points as u64).into()]);
-                writer.row("exponents", row)?;
+                laws.push(row);
             }
         }
     }
+    writer.put("exponents", &[], laws)?;
     session.finish(writer)
 }
 
@@ -149,27 +147,28 @@ fn at_size(
     strategies: &[Configured],
     lights: u64,
 ) -> Result<()> {
-    let options = session.options;
-    let scene = file::open(path, &Overrides { lights: Some(lights), ..options.overrides.clone() })?;
-    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let own = PIXELS.iter().find(|(from, _)| lights >= *from).map_or(0, |(_, pixels)| *pixels);
-    let target = Target::whole(&stage).thinned(session.pixels(own));
-    let reference = session.reference(&target)?;
+    let scene = file::open(path, &Overrides { lights: Some(lights), ..session.options.overrides.clone() })?;
     // Every arrival of the oracle takes as many rays as the truth.
     let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle;
     let strategies: Vec<&Configured> = strategies.iter().filter(within).collect();
-    for tried in session.trial(&target, &reference.truth, &strategies, Budgets::Largest)? {
-        let mut row = vec![(stage.scene().lights().len() as u64).into()];
-        row.extend(growth_cells(&tried, &target));
-        writer.row("growth", row)?;
+    let key = [("lights", (scene.lights().len() as u64).into())];
+    if writer.has("growth", &key, strategies.len()) {
+        return Ok(());
     }
+    let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+    // Heavy tails want all the receivers that there are.
+    let whole = Target::whole(&stage);
+    let (target, reference) = session.reference(&whole.thinned(session.pixels(whole.places.len())))?;
     writer.note(format!(
         "{} lights, {} of which can reach what the camera sees; the reference's own relMSE is {:.1e}.",
         stage.scene().lights().len(),
         stage.lights().len(),
         reference.truth.own_rel_mse()
-    ));
-    Ok(())
+    ))?;
+    let tried = session.trial(&target, &reference.truth, &strategies, Budgets::Largest)?;
+    let lights = Cell::from(stage.scene().lights().len() as u64);
+    let row = |tried| std::iter::once(lights.clone()).chain(growth_cells(tried, &target)).collect();
+    writer.put("growth", &key, tried.iter().map(row).collect())
 }
 
 fn growth_cells(tried: &Tried, target: &Target<'_>) -> Vec<Cell> {

@@ -8,7 +8,7 @@ use super::area::{ByArea, by_area};
 use super::quality::{Finding, Quality, quality};
 use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session};
+use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::measure::figure::Figure;
 use crate::measure::summary::blank;
@@ -61,6 +61,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
         files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
+    told_apart(&scenes)?;
     let mut writer =
         session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
     for scene in scenes {
@@ -173,15 +174,20 @@ fn by_probability(
     let mut unknown = Vec::new();
     for strategy in strategies.iter().filter(|strategy| blank(strategy).claim != Claim::Oracle) {
         session.watch.check()?;
+        let key = [("strategy", strategy.name().into())];
+        if writer.has(&table, &key, 1) {
+            session.watch.advance(1);
+            continue;
+        }
         let built = strategy.build(BuildContext { stage: &stage, seed: session.options.seed });
         match built.map(|sampler| qualities(&stage, sampler.as_ref(), &by_area.receivers)) {
             Ok(found) if found.contains(&Finding::Unknown) => unknown.push(strategy.name()),
-            Ok(found) => writer.row(&table, quality_cells(strategy, &by_area, &found))?,
+            Ok(found) => writer.put(&table, &key, vec![quality_cells(strategy, &by_area, &found)])?,
             Err(error) => {
                 let mut row = vec![strategy.name().into(), claim(&blank(strategy))];
                 row.resize(quality_columns().len() - 1, Cell::Missing);
                 row.push(format!("failed: {error}").as_str().into());
-                writer.row(&table, row)?;
+                writer.put(&table, &key, vec![row])?;
             }
         }
         session.watch.advance(1);
@@ -189,8 +195,9 @@ fn by_probability(
     session.watch.end();
     if !unknown.is_empty() {
         let (scene, names) = (stage.scene().name(), unknown.join(", "));
-        writer
-            .note(format!("{scene}: not in the table of variance, since their probabilities cannot be told: {names}."));
+        writer.note(format!(
+            "{scene}: not in the table of variance, since their probabilities cannot be told: {names}."
+        ))?;
     }
     Ok(())
 }
@@ -206,7 +213,7 @@ fn quality_cells(strategy: &Configured, by_area: &ByArea, found: &[Finding]) -> 
     };
     // Receivers are drawn independently.
     let mean = |of: fn(&Quality) -> f64, found: &[Finding]| {
-        cells(Figure::mean(known(found).iter().map(of).collect()).interval())
+        cells(Figure::signed_mean(known(found).iter().map(of).collect()).interval())
     };
     let (street, facade) = found.split_at(by_area.streets);
     let all = known(found);
@@ -235,10 +242,21 @@ fn by_measuring(
     strategies: &[Configured],
 ) -> Result<()> {
     let table = measured_table(&scene);
+    if writer.has(&table, &[], strategies.len()) {
+        return Ok(());
+    }
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let target = Target::whole(&stage).thinned(session.pixels(PIXELS));
-    let reference = session.reference(&target)?;
+    let (target, reference) = session.reference(&Target::whole(&stage).thinned(session.pixels(PIXELS)))?;
+    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
+    writer.note(format!(
+        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}, at {} receivers.",
+        stage.scene().name(),
+        stage.scene().lights().len(),
+        stage.lights().len(),
+        target.places.len()
+    ))?;
     let found = session.trial(&target, &reference.truth, &strategies.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let mut rows = Vec::new();
     let of = |strategy: &str| found.iter().find(|one| one.summary.strategy == strategy);
     let (oracle, intensity) = (of("oracle"), of("intensity"));
     for one in &found {
@@ -254,16 +272,9 @@ fn by_measuring(
         row.extend(cells(one.error_cpu_s().map(|figure| figure.interval())));
         row.extend(cells(one.ratio(intensity, Tried::error_cpu_s)));
         row.push(remark(summary));
-        writer.row(&table, row)?;
+        rows.push(row);
     }
-    let kind = if reference.exact_sum { "an exact sum" } else { "stratified" };
-    writer.note(format!(
-        "{}: {} lights; {} of them can reach the camera's receivers; the reference is {kind}.",
-        stage.scene().name(),
-        stage.scene().lights().len(),
-        stage.lights().len()
-    ));
-    Ok(())
+    writer.put(&table, &[], rows)
 }
 
 impl Tried {

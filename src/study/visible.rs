@@ -9,7 +9,7 @@
 use super::cutoff::sizes;
 use super::table::{cells, column, interval, measured, plot, remark};
 use super::trial::{Budgets, Tried, mean};
-use super::{Entry, Session};
+use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::measure::figure::{Figure, error};
 use crate::measure::plan::budgets;
@@ -18,6 +18,7 @@ use crate::measure::target::Target;
 use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::record::{Interval, Row};
+use crate::scene::Scene;
 use crate::scene::file::{self, Overrides};
 use crate::strategy::Role;
 use crate::strategy::registry::{self, Configured};
@@ -84,6 +85,7 @@ const SWEEP: [&str; 20] = [
 fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;
     let sizes = sizes(FEWEST, options.max_lights);
+    let smallest = sizes[0];
     let steps = STEPS.iter().chain(&FLOORS).map(|&(step, name)| Ok((step, registry::parse(name)?)));
     let steps: Vec<(&str, Configured)> = steps.collect::<Result<_>>()?;
     let sweep = registry::parse_list(options.strategies.as_deref().unwrap_or(&SWEEP.join(",")))?;
@@ -93,11 +95,12 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let mut tables: Vec<TableRecord> = scenes.iter().map(|(name, ..)| ablation(session, name)).collect();
     tables.push(sweep_table(session));
     let swept = session.scenes(&SWEPT);
-    // Read once before anything is measured: a misspelt name must not cost an hour.
-    for path in &swept {
-        file::open(path, &options.overrides)?;
-    }
-    let mut writer = session.open([], tables)?;
+    // Read before anything is measured: a misspelt name must not cost an hour.
+    let asked: Vec<Scene> = swept.iter().map(|path| file::open(path, &options.overrides)).collect::<Result<_>>()?;
+    told_apart(&asked)?;
+    let smallest = Overrides { lights: Some(smallest), ..options.overrides.clone() };
+    let own = [file::open(Path::new(CANYON), &smallest)?, file::open(Path::new(PLAZA), &options.overrides)?];
+    let mut writer = session.open(asked.iter().chain(&own), tables)?;
     for (table, path, lights) in &scenes {
         step_by_step(session, &mut writer, table, &open(session, Path::new(path), *lights)?, &steps)?;
     }
@@ -122,51 +125,48 @@ fn step_by_step(
 ) -> Result<()> {
     let few = stage.scene().lights().len() <= MOST_OF_ORACLE;
     let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
-    let target = target(session, stage);
-    let reference = session.reference(&target)?;
+    let budgets: Vec<u32> = budgets(session.options.passes).collect();
+    if writer.has(table, &[], steps.len() * budgets.len()) {
+        return Ok(());
+    }
+    let (target, reference) = session.reference(&Target::whole(stage).thinned(session.pixels(PIXELS)))?;
+    note(writer, &target, &reference)?;
     let strategies: Vec<&Configured> = steps.iter().map(|(_, strategy)| strategy).collect();
     let tried = session.trial(&target, &reference.truth, &strategies, Budgets::All)?;
     let of = |name: &str| strategies.iter().zip(&tried).find(|(of, _)| of.name() == name).map(|(_, tried)| tried);
     let (classic, tree) = (of(strategies[0].name()), of("light-tree"));
-    for passes in budgets(session.options.passes) {
-        for ((step, strategy), tried) in steps.iter().zip(&tried).filter(|(_, tried)| !tried.at(passes).is_empty()) {
+    let mut rows = Vec::new();
+    for passes in budgets {
+        for ((step, strategy), tried) in steps.iter().zip(&tried) {
             let mut row: Vec<Cell> = vec![(*step).into(), strategy.name().into(), u64::from(passes).into()];
             row.extend(figures_at(tried, passes));
             row.extend(cells(tried.product_to(classic, passes)));
             row.extend(cells(tried.product_to(tree, passes)));
-            row.push(Cell::Missing);
-            writer.row(table, row)?;
+            row.push(tried.why_not(passes));
+            rows.push(row);
         }
     }
-    for ((step, strategy), tried) in steps.iter().zip(&tried).filter(|(_, tried)| !measured(&tried.summary)) {
-        let mut row: Vec<Cell> = vec![(*step).into(), strategy.name().into()];
-        row.resize(writer.table(table).0.columns.len() - 1, Cell::Missing);
-        row.push(remark(&tried.summary));
-        writer.row(table, row)?;
-    }
-    note(writer, &target, &reference);
-    Ok(())
+    writer.put(table, &[], rows)
 }
 
 /// The rows of one scene in the table of parameters.
 fn sweep_over(session: &Session<'_>, writer: &mut StudyWriter, stage: &Stage, sweep: &[Configured]) -> Result<()> {
-    let target = target(session, stage);
-    let reference = session.reference(&target)?;
-    let tried = session.trial(&target, &reference.truth, &sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
-    for (strategy, one) in sweep.iter().zip(&tried) {
-        let mut row: Vec<Cell> = vec![stage.scene().name().into(), strategy.name().into()];
-        if measured(&one.summary) {
-            let passes = one.summary.passes;
-            row.push(u64::from(passes).into());
-            row.extend(figures_at(one, passes));
-            row.extend(cells(one.product_to(tried.first(), passes)));
-        } else {
-            row.resize(writer.table("sweep").0.columns.len() - 1, Cell::Missing);
-        }
-        row.push(remark(&one.summary));
-        writer.row("sweep", row)?;
+    let key = [("scene", stage.scene().name().into())];
+    if writer.has("sweep", &key, sweep.len()) {
+        return Ok(());
     }
-    Ok(())
+    let (target, reference) = session.reference(&Target::whole(stage).thinned(session.pixels(PIXELS)))?;
+    let tried = session.trial(&target, &reference.truth, &sweep.iter().collect::<Vec<_>>(), Budgets::Largest)?;
+    let row = |(strategy, one): (&Configured, &Tried)| {
+        let passes = one.summary.passes;
+        let mut row: Vec<Cell> = vec![stage.scene().name().into(), strategy.name().into()];
+        row.push((passes > 0).then_some(u64::from(passes)).into());
+        row.extend(figures_at(one, passes));
+        row.extend(cells(one.product_to(tried.first(), passes)));
+        row.push(remark(&one.summary));
+        row
+    };
+    writer.put("sweep", &key, sweep.iter().zip(&tried).map(row).collect())
 }
 
 fn ablation(session: &Session<'_>, name: &str) -> TableRecord {
@@ -227,12 +227,16 @@ fn figures() -> Vec<ColumnRecord> {
     columns
 }
 
+/// The cells of [`figures`]; missing where a strategy was not run so far.
 fn figures_at(tried: &Tried, passes: u32) -> Vec<Cell> {
     let rows = tried.at(passes);
+    if rows.is_empty() {
+        return vec![Cell::Missing; figures().len()];
+    }
     let timed = |figure: Figure| tried.is_timed().then(|| figure.interval());
-    let mut row = cells(error(&rows).interval()).to_vec();
     let outliers =
         tried.of_means(passes, [|row| row.rel_mse, |row| row.rel_mse_trimmed], |[all, trimmed]| all / trimmed);
+    let mut row = cells(error(&rows).interval()).to_vec();
     row.extend(cells(outliers.interval()));
     row.extend(cells(timed(mean(&rows, Row::total_cpu_s))));
     row.extend(cells(timed(tried.product(passes))));
@@ -246,9 +250,18 @@ impl Tried {
         self.of_means(passes, [|row| row.rel_mse, Row::total_cpu_s], |[error, seconds]| error * seconds)
     }
 
+    /// Why it has no figures at a number of passes; missing where it has.
+    fn why_not(&self, passes: u32) -> Cell {
+        match measured(&self.summary) {
+            true if self.at(passes).is_empty() => "too much counted work".into(),
+            _ => remark(&self.summary),
+        }
+    }
+
     /// That over another's, where both have a time at as many passes.
     fn product_to(&self, other: Option<&Self>, passes: u32) -> Option<Interval> {
-        let other = other.filter(|other| self.is_timed() && other.is_timed() && !other.at(passes).is_empty())?;
+        let other =
+            other.filter(|other| [self, other].iter().all(|one| one.is_timed() && !one.at(passes).is_empty()))?;
         if std::ptr::eq(self, other) {
             return Some(Interval::certain(1.0));
         }
@@ -259,24 +272,14 @@ impl Tried {
 fn notes(session: &Session<'_>) -> String {
     format!(
         "{} runs, each from nothing in one block of passes on one thread (none of more than {} s of counted work); CPU s: of the whole \
-         frame, set-up and learning too; relMSE at {} of its receivers (fewer among 100,000 lights and more). `oracle` has no time.",
+         frame, set-up and learning too; relMSE at {} of its receivers (fewer among very many lights). `oracle` has no time.",
         session.options.repeats,
         session.options.seconds,
         session.pixels(PIXELS)
     )
 }
 
-/// Whole frames, and errors at fewer receivers where their truth takes a ray for each of many lights.
-fn target<'a>(session: &Session<'_>, stage: &'a Stage) -> Target<'a> {
-    let own = match stage.scene().lights().len() {
-        0..100_000 => PIXELS,
-        100_000..1_000_000 => PIXELS / 2,
-        _ => PIXELS / 4,
-    };
-    Target::whole(stage).thinned(session.pixels(own))
-}
-
-fn note(writer: &mut StudyWriter, target: &Target<'_>, reference: &Reference) {
+fn note(writer: &mut StudyWriter, target: &Target<'_>, reference: &Reference) -> Result<()> {
     let scene = target.stage.scene();
     writer.note(format!(
         "{}, {} lights, {} of which can reach what the camera sees, at {} receivers of {}; the reference's own relMSE is {:.1e}.",
@@ -286,5 +289,5 @@ fn note(writer: &mut StudyWriter, target: &Target<'_>, reference: &Reference) {
         target.places.len(),
         target.frame.len(),
         reference.truth.own_rel_mse()
-    ));
+    ))
 }

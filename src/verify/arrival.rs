@@ -4,11 +4,10 @@
 //! So neighbours, who would share such a table, are served in several orders by samplers that are built anew for each.
 
 use super::Check;
-use super::calls::{calls, count_different};
+use super::calls::{choices, count_different};
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::scene::receiver::Receiver;
-use crate::strategy::Pick;
 use crate::strategy::erased::{AnySampler, Frame};
 
 /// The check's name.
@@ -19,7 +18,7 @@ const GROUPS: usize = 4;
 const NEIGHBOURS: usize = 12;
 
 /// Passes at each.
-const PASSES: u32 = 4;
+const PASSES: u32 = 2;
 
 /// Calls that differ from those of a sampler that serves the neighbours in order: backwards, after having served
 /// `others`; and by two threads at once, each every other of them, one of the two backwards.
@@ -30,18 +29,19 @@ pub(super) fn order(
     build: impl Fn() -> Result<Box<dyn AnySampler>>,
 ) -> Result<Check> {
     let neighbours = neighbours(all);
-    let frame: Vec<Receiver> = neighbours.iter().chain(others).copied().collect();
+    let is_other = |at: &&Receiver| neighbours.iter().all(|neighbour| neighbour.pixel != at.pixel);
+    let frame: Vec<Receiver> = neighbours.iter().chain(others.iter().filter(is_other)).copied().collect();
     let frame = Frame::new(&frame, RunKey { seed, run: 0 });
     let serve = |sampler: &dyn AnySampler, order: &[usize]| {
         let receivers: Vec<Receiver> = order.iter().map(|&i| neighbours[i]).collect();
-        calls(sampler, frame, &receivers, 0..PASSES, false)
+        choices(sampler, frame, &receivers, 0..PASSES)
     };
     let forwards: Vec<usize> = (0..neighbours.len()).collect();
     let backwards: Vec<usize> = forwards.iter().rev().copied().collect();
     let wanted = serve(&*build()?, &forwards);
 
     let sampler = build()?;
-    calls(&*sampler, frame, others, 0..1, false);
+    choices(&*sampler, frame, others, 0..1);
     let mut found = vec![(backwards.clone(), serve(&*sampler, &backwards))];
 
     let sampler = build()?;
@@ -55,11 +55,11 @@ pub(super) fn order(
     found.extend([(even, of_even), (odd, of_odd)]);
 
     let passes = PASSES as usize;
-    let of = |calls: &[Vec<Pick>], i: usize| calls[i * passes..(i + 1) * passes].to_vec();
+    let of = |i: usize| i * passes..(i + 1) * passes;
     let (mut differ, mut first) = (0, None);
     for (order, found) in &found {
         for (place, &i) in order.iter().enumerate() {
-            let here = count_different(&of(&wanted, i), &of(found, place));
+            let here = count_different(&wanted[of(i)], &found[of(place)]);
             if here > 0 {
                 first.get_or_insert(neighbours[i].pixel);
             }

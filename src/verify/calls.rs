@@ -1,5 +1,6 @@
 //! What does a sampler pick?
 
+use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
 use crate::strategy::Pick;
 use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
@@ -43,8 +44,27 @@ pub(super) fn calls(
     calls
 }
 
-/// How many calls differ, of as many on both sides. Bit for bit: what is no number is like itself.
-pub(super) fn count_different(a: &[Vec<Pick>], b: &[Vec<Pick>]) -> usize {
-    let bits = |pick: &Pick| (pick.light, pick.weight.to_bits(), pick.uv.map(f32::to_bits));
-    a.iter().zip(b).filter(|(a, b)| !a.iter().map(bits).eq(b.iter().map(bits))).count()
+/// A hash of what each call chooses, by receiver and pass: lights, weights and a strategy's own points. A call may list
+/// a million lights.
+pub(super) fn choices(
+    sampler: &dyn AnySampler,
+    frame: Frame<'_>,
+    receivers: &[Receiver],
+    passes: Range<u32>,
+) -> Vec<u64> {
+    let mut choices = vec![0; receivers.len() * passes.len()];
+    visit(sampler, frame, receivers, passes.clone(), false, |i, pass, call| {
+        let pair = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
+        let words = call.iter().flat_map(|pick| {
+            let [u, v] = pick.uv.map(f32::to_bits);
+            [pair(pick.light, pick.weight.to_bits()), pair(u, v)]
+        });
+        choices[i * passes.len() + (pass - passes.start) as usize] = words.fold(0, |state, word| hash(&[state, word]));
+    });
+    choices
+}
+
+/// How many of two lists differ.
+pub(super) fn count_different<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
 }

@@ -10,6 +10,7 @@ use crate::scene::light_sampling::LightSampling;
 use crate::scene::needs::Needs;
 use crate::scene::receiver::Receiver;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Everything that strategies and renderers share; built once a scene, off every clock.
 pub struct Stage {
@@ -20,6 +21,16 @@ pub struct Stage {
     lights: Vec<LightId>,
     offset: Offset,
     light_sampling: LightSampling,
+    shared: Vec<Shared>,
+}
+
+/// A part of what all strategies share, and how long it took: it is on no strategy's clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shared {
+    /// What was done: occluders, view (primary rays) or leave-out.
+    pub part: &'static str,
+    /// Wall seconds, on as many threads as the pool has that made the stage.
+    pub wall_s: f64,
 }
 
 /// Whether a stage leaves out what its scene provably does not need.
@@ -35,14 +46,18 @@ pub enum LeaveOut {
 impl Stage {
     /// Prepares a scene.
     pub fn new(scene: Scene, leave_out: LeaveOut, offset: Offset) -> Self {
-        let occluders = Occluders::new(&scene);
-        let view = View::new(&scene, &occluders);
+        let mut shared = Vec::new();
+        let occluders = timed(&mut shared, "occluders", || Occluders::new(&scene));
+        let view = timed(&mut shared, "view", || View::new(&scene, &occluders));
         let (needs, lights) = match leave_out {
             LeaveOut::Yes => {
                 let needs = Needs::of(&scene);
                 // The historical policies fail far from the origin: a surface then blocks its own rays, and shows it.
                 let occlusion = needs.occlusion || offset != Offset::SCALED;
-                (Needs { occlusion, ..needs }, reach::reaching(&scene, view.receivers()))
+                (
+                    Needs { occlusion, ..needs },
+                    timed(&mut shared, "leave-out", || reach::reaching(&scene, view.receivers())),
+                )
             }
             LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
         };
@@ -54,6 +69,7 @@ impl Stage {
             lights,
             offset,
             light_sampling: LightSampling::default(),
+            shared,
         }
     }
 
@@ -87,6 +103,11 @@ impl Stage {
         &self.lights
     }
 
+    /// What making the stage took, part by part.
+    pub fn shared(&self) -> &[Shared] {
+        &self.shared
+    }
+
     /// How shadow rays keep off their own surfaces.
     pub fn offset(&self) -> Offset {
         self.offset
@@ -109,4 +130,12 @@ impl Stage {
         self.needs = needs;
         self
     }
+}
+
+/// Does a part of the shared work and notes how long it took.
+fn timed<T>(shared: &mut Vec<Shared>, part: &'static str, work: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let done = work();
+    shared.push(Shared { part, wall_s: begun.elapsed().as_secs_f64() });
+    done
 }

@@ -28,6 +28,6 @@ fn run(session: &Session<'_>) -> Result<Study> {
         "Errors over {} receivers in {} independent runs; all contenders of a table in each run.",
         session.pixels(measure::PIXELS),
         options.repeats
-    ));
+    ))?;
     session.finish(writer)
 }

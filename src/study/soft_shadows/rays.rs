@@ -1,6 +1,6 @@
 //! How does the error of a soft shadow fall with its rays, and how large is its penumbra?
 
-use super::measure::{Contender, PIXELS, measure};
+use super::measure::{Contender, Measured, PIXELS, measure};
 use super::picture::{Shadow, outlined, shadow, sheet};
 use super::scene::{HEIGHT, SIZES, one_light};
 use crate::base::error::Result;
@@ -8,7 +8,7 @@ use crate::base::random::RunKey;
 use crate::image;
 use crate::measure::reference::Reference;
 use crate::measure::target::{Target, spread};
-use crate::record::study::{Cell, Format, TableRecord};
+use crate::record::study::{Cell, Cells, Format, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
@@ -85,74 +85,96 @@ pub(super) fn laws() -> TableRecord {
 const OWN: f64 = 1e-8;
 
 pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()> {
-    let (mut pictures, mut size) = (Vec::new(), (0, 0));
-    for (name, side) in SIZES {
-        session.watch.check()?;
-        let stage = Stage::new(one_light(session, side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
-        let whole = Target::whole(&stage);
-        let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
-        let shadows: Vec<Shadow> = stage.receivers().par_iter().map(|at| shadow(&stage, at)).collect();
-        let share = |kind| shadows.iter().filter(|s| **s == kind).count() as f64 / shadows.len().max(1) as f64;
-        let few = Target::of(&stage, spread(stage.receivers(), session.pixels(PIXELS)));
-        let reference = Reference::compute(&few, OWN, &session.options.cache, session.watch)?;
-
-        let mut samplers = Vec::new();
-        for points in POINTS {
-            for rays in RAYS {
-                let strategy = parse(&format!("all:points={points}"))?;
-                samplers.push((
-                    points,
-                    rays,
-                    strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?,
-                ));
-            }
-        }
-        let contenders: Vec<Contender<'_>> = samplers
-            .iter()
-            .map(|(_, rays, sampler)| Contender { stage: &stage, sampler: &**sampler, passes: *rays })
-            .collect();
-        let measured = measure(session, &format!("{name} light"), &contenders, &few.frame, &reference.truth)?;
-        for points in POINTS {
-            let series = format!("{name} {points}");
-            let mut errors = Vec::new();
-            for ((_, rays, _), found) in samplers.iter().zip(&measured).filter(|((of, ..), _)| *of == points) {
-                let mut row: Vec<Cell> = vec![
-                    series.as_str().into(),
-                    f64::from(side).into(),
-                    share(Shadow::Umbra).into(),
-                    share(Shadow::Penumbra).into(),
-                    u64::from(*rays).into(),
-                    found.rays.into(),
-                ];
-                row.extend(cells(found.cpu_s));
-                row.extend(cells(found.rel_mse));
-                writer.row("rays", row)?;
-                errors.push((found.rays, found.rel_mse.mean));
-            }
-            let law = PowerLaw::fit(errors);
-            let mut row: Vec<Cell> = vec![series.as_str().into()];
-            row.extend(cells(law.map(|law| law.exponent)));
-            row.push(law.map(|law| law.residual).into());
-            writer.row("laws", row)?;
-        }
-        let shown = samplers.iter().filter(|(points, ..)| *points == "random");
-        let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
-        row.push(outlined(&stage, seen.truth.mean(), &shadows));
-        pictures.push((row, stage.scene().exposure()));
-        size = stage.view().resolution();
-    }
-    let exposure = pictures.first().map_or(1.0, |(_, exposure)| *exposure);
-    let rows: Vec<_> = pictures.into_iter().map(|(row, _)| row).collect();
     let sizes = SIZES.map(|(_, side)| format!("{side} m")).join(", ");
     let rays = RAYS.map(|rays| rays.to_string()).join(", ");
     let title = format!(
         "Square lights of {sizes} (down) by {rays} rays a triangle and exact (across), there with the outlines of umbra (blue) and \
          penumbra (orange)"
     );
-    if let Some(path) = writer.picture("shadows.png", title)? {
-        image::write(&path, &sheet(&rows, size), exposure)?;
+    let picture = writer.picture("shadows.png", title)?;
+    let (mut pictures, mut size, mut exposure) = (Vec::new(), (0, 0), 1.0);
+    for (name, side) in SIZES {
+        session.watch.check()?;
+        let key = [("side_m", f64::from(side).into())];
+        let is_there = writer.has("rays", &key, POINTS.len() * RAYS.len());
+        if is_there && picture.is_none() {
+            continue;
+        }
+        let stage = Stage::new(one_light(session, side, HEIGHT)?, LeaveOut::Yes, Offset::SCALED);
+        let whole = Target::whole(&stage);
+        let seen = Reference::compute(&whole, 1e-4, &session.options.cache, session.watch)?;
+        let shadows: Vec<Shadow> = stage.receivers().par_iter().map(|at| shadow(&stage, at)).collect();
+        let mut samplers = Vec::new();
+        for points in POINTS {
+            for rays in RAYS {
+                let strategy = parse(&format!("all:points={points}"))?;
+                let sampler = strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?;
+                samplers.push((points, rays, sampler));
+            }
+        }
+        if !is_there {
+            writer.put("rays", &key, measured(session, name, side, &stage, &samplers, &shadows)?)?;
+        }
+        let shown = samplers.iter().filter(|(points, ..)| *points == "random");
+        let mut row: Vec<_> = shown.map(|(_, rays, sampler)| rendered(session, &stage, &**sampler, *rays)).collect();
+        row.push(outlined(&stage, seen.truth.mean(), &shadows));
+        pictures.push(row);
+        (size, exposure) = (stage.view().resolution(), stage.scene().exposure());
     }
-    Ok(())
+    if let Some(path) = picture {
+        image::write(&path, &sheet(&pictures, size), exposure)?;
+    }
+    writer.put("laws", &[], fitted(writer))
+}
+
+/// Points, rays a triangle, and who draws them.
+type Drawn = (&'static str, u32, Box<dyn AnySampler>);
+
+/// The rows of a light.
+fn measured(
+    session: &Session<'_>,
+    name: &str,
+    side: f32,
+    stage: &Stage,
+    samplers: &[Drawn],
+    shadows: &[Shadow],
+) -> Result<Vec<Cells>> {
+    let few = Target::of(stage, spread(stage.receivers(), session.pixels(PIXELS)));
+    let reference = Reference::compute(&few, OWN, &session.options.cache, session.watch)?;
+    let contenders: Vec<Contender<'_>> =
+        samplers.iter().map(|(_, rays, sampler)| Contender { stage, sampler: &**sampler, passes: *rays }).collect();
+    let found = measure(session, &format!("{name} light"), &contenders, &few.frame, &reference.truth)?;
+    let share = |kind| shadows.iter().filter(|s| **s == kind).count() as f64 / shadows.len().max(1) as f64;
+    let row = |((points, rays, _), found): (&Drawn, &Measured)| {
+        let mut row: Vec<Cell> = vec![
+            format!("{name} {points}").as_str().into(),
+            f64::from(side).into(),
+            share(Shadow::Umbra).into(),
+            share(Shadow::Penumbra).into(),
+            u64::from(*rays).into(),
+            found.rays.into(),
+        ];
+        row.extend(cells(found.cpu_s));
+        row.extend(cells(found.rel_mse));
+        row
+    };
+    Ok(samplers.iter().zip(&found).map(row).collect())
+}
+
+/// The law of each light and kind of points, from the rows of all.
+fn fitted(writer: &StudyWriter) -> Vec<Cells> {
+    let (table, rows) = writer.table("rays");
+    let place = |name| table.column(name).expect("a study names its own columns");
+    let (rays, error) = (place("rays"), place("rel_mse"));
+    let of_light = rows.chunk_by(|a, b| a[0] == b[0]);
+    let law = |rows: &[Cells]| {
+        let law = PowerLaw::fit(rows.iter().filter_map(|row| row[rays].number().zip(row[error].number())));
+        let mut row = vec![rows[0][0].clone()];
+        row.extend(cells(law.map(|law| law.exponent)));
+        row.push(law.map(|law| law.residual).into());
+        row
+    };
+    of_light.map(law).collect()
 }
 
 /// All of the picture, by so many passes of a sampler.

@@ -104,10 +104,18 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
     for power in RATIOS {
         session.watch.check()?;
         let ratio = 2f32.powi(power);
-        writer.row("ways", session.engine().alone(|meter| at_ratio(ratio, session.options.seed, meter))?)?;
+        let key = [("ratio", f64::from(ratio).into())];
+        if !writer.has("ways", &key, 1) {
+            let row = session.engine().alone(|meter| at_ratio(ratio, session.options.seed, meter))?;
+            writer.put("ways", &key, vec![row])?;
+        }
     }
     let sizes = SIZES.map(|(name, side)| (name, side, HEIGHT));
     for (name, side, height) in sizes.into_iter().chain([("near", NEAR.0, NEAR.1)]) {
+        let key = [("light", name.into())];
+        if writer.has("by-size", &key, LightSampling::NAMED.len()) {
+            continue;
+        }
         let stages = LightSampling::NAMED
             .iter()
             .map(|&(_, by)| {
@@ -129,13 +137,15 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .collect();
         let measured =
             measure(session, &format!("{name} light, by way"), &contenders, &target.frame, &reference.truth)?;
+        let mut rows = Vec::new();
         for ((by, _), found) in LightSampling::NAMED.iter().zip(&measured) {
             let mut row: Vec<Cell> = vec![name.into(), (*by).into()];
             row.extend(cells(found.cpu_s));
             row.extend(cells(found.rel_mse));
             row.extend(cells(found.cost_s()));
-            writer.row("by-size", row)?;
+            rows.push(row);
         }
+        writer.put("by-size", &key, rows)?;
     }
     Ok(())
 }
