@@ -404,7 +404,7 @@ fn a_bias_that_may_be_zero_has_no_balance() {
 fn what_errors_are_taken_at_and_what_is_off_the_clock_is_said() {
     let (mut run, rows) = record();
     let table = |run: &RunRecord| report::table(run, &run.scenes[0], &rows);
-    assert!(table(&run).contains("  off the clock, shared by all strategies: occluders 0.0310 s\n"));
+    assert!(table(&run).contains("  off the clock, shared by all strategies, wall seconds: occluders 0.0310\n"));
     assert!(!table(&run).contains("errors are taken at"));
     run.scenes[0].pixels_measured = 2_000;
     run.scenes[0].shared.clear();
