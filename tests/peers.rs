@@ -139,7 +139,7 @@ fn images_of_peers_become_rows_marked_external() {
     let (ground, folder) = (ground(), tempfile::tempdir().expect("a folder"));
     let out = folder.path().join("out");
     let peers = ["--peer", "cycles:light-tree=off", "--peer", "mitsuba", "--peer", "cycles"];
-    let printed = contains("external").and(contains("cycles:light-tree=off")).and(contains("mitsuba: Fake 1.0."));
+    let printed = contains("external").and(contains("cycles:light-tree=off")).and(contains("`mitsuba`: Fake 1.0."));
     let noted = contains("`mitsuba`: times are made up").and(contains("`mitsuba`: 2 runs; errors over"));
     ground.compare("good", "reference.exr", &out, &peers).assert().success().stdout(printed.and(noted));
     let run = run(&out);
@@ -148,6 +148,11 @@ fn images_of_peers_become_rows_marked_external() {
         assert_eq!(summary.claim, Claim::External { renderer: "Fake 1.0".into() });
         assert_eq!((summary.runs, summary.passes), (2, 4));
         assert_eq!((summary.setup_cpu_s.mean, summary.cpu_s.mean), (0.5, 0.04));
+        let points: Vec<(u32, f64)> = summary.curve.iter().map(|point| (point.passes, point.cpu_s.mean)).collect();
+        assert_eq!(points, [(1, 0.51), (4, 0.54)], "from nothing to the image");
+        assert_eq!(summary.seconds_to[0].value.mean, 0.51, "read as a strategy's curve is");
+        assert_eq!((summary.seconds_to.len(), summary.error_at.len()), (3, run.scenes[0].times_s.len()));
+        assert!(summary.rank.is_none() && summary.letters.is_empty());
         assert!(summary.rel_mse.mean < 1e-12 && summary.mean_bias.mean.abs() < 1e-6, "{summary:?}");
         let budgets: Vec<(u32, u32)> = rows(&out, name).iter().map(|row| (row.run, row.passes)).collect();
         assert_eq!(budgets, [(0, 1), (0, 4), (1, 1), (1, 4)]);

@@ -4,7 +4,8 @@
 use citylights::record::folder::MARK;
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Kind, Machine, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA, SceneRecord, Summary,
+    Claim, Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord,
+    SCHEMA, SceneRecord, SharedWork, Summary,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,7 @@ fn row(run: u32) -> Row {
         rel_mse: f64::MAX,
         rel_mse_trimmed: -0.0,
         trimmed_share: 1e-300,
+        largest: std::array::from_fn(|i| 1.0 / (i as f64 + 7.0)),
         energy_ratio: f64::NEG_INFINITY,
         deciles: std::array::from_fn(|i| 1.0 / (i as f64 + 3.0)),
         error: None,
@@ -30,7 +32,7 @@ fn row(run: u32) -> Row {
 }
 
 fn record() -> RunRecord {
-    let value = |mean| Interval { mean, half_width: 0.1 * mean };
+    let value = |mean| Interval { mean, low: 0.9 * mean, high: 1.2 * mean };
     RunRecord {
         schema: SCHEMA,
         plan: "scenes; strategies; budget".into(),
@@ -67,25 +69,38 @@ fn record() -> RunRecord {
                 cached: false,
                 subset: false,
             },
+            shared: vec![SharedWork { what: "occluders".to_owned(), wall_s: 0.03 }],
+            errors: vec![0.1, 0.01],
+            times_s: vec![1.0],
+            ranked_by: 1,
             notes: vec!["exposure 1: the scene states none".to_owned()],
             summaries: vec![Summary {
-                strategy: "range:cutoff=0.5".to_owned(),
-                claim: Claim::Biased { why: "drops lights below half a display step".to_owned() },
-                chooses: true,
                 runs: 16,
+                curve: vec![Point { passes: 64, cpu_s: value(2.01), rel_mse: value(0.25) }],
                 passes: 64,
-                setup_cpu_s: 0.01,
-                cpu_s: 2.0,
+                setup_cpu_s: value(0.01),
+                arrival_cpu_s: value(0.08),
+                pass_cpu_s: value(0.03),
+                cpu_s: value(2.0),
                 wall_s: 2.1,
                 heap_bytes: 4096,
                 rel_mse: value(0.25),
-                mse: Interval { mean: f64::NAN, half_width: f64::INFINITY },
+                mse: Interval { mean: f64::NAN, low: f64::NEG_INFINITY, high: f64::INFINITY },
                 rel_mse_trimmed: value(0.2),
-                rel_bias2: Interval { mean: -1e-5, half_width: f64::NEG_INFINITY },
+                rel_bias2: Interval { mean: -1e-5, low: f64::NEG_INFINITY, high: 1e-5 },
                 mean_bias: value(-0.01),
+                simultaneous_bias: value(-0.01),
                 detectable_bias: 0.002,
-                variance_seconds: 0.5,
-                times_oracle: Some(2.5),
+                variance_seconds: Interval { mean: 0.5, low: 0.4, high: f64::INFINITY },
+                balance_s: Some(value(38.0)),
+                seconds_to: vec![
+                    Reading { at: 0.1, value: value(5.0), how: Read::Extrapolated },
+                    Reading { at: 0.01, value: value(0.0), how: Read::Never },
+                ],
+                error_at: vec![Reading { at: 1.0, value: value(0.5), how: Read::TooSoon }],
+                rank: Some([2, 4]),
+                letters: "ab".to_owned(),
+                times_oracle: Some(value(2.5)),
                 receivers: Some(256),
                 counts: Counts {
                     samples: 3_200_000,
@@ -94,9 +109,11 @@ fn record() -> RunRecord {
                     weighed: 9,
                     ..Counts::default()
                 },
-                unstable: false,
-                skipped: None,
-                error: None,
+                ..Summary::blank(
+                    "range:cutoff=0.5".to_owned(),
+                    Claim::Biased { why: "drops lights below half a display step".to_owned() },
+                    true,
+                )
             }],
         }],
     }
@@ -134,7 +151,7 @@ fn records_come_back_with_infinities_and_nan() {
     store::write_run(folder.path(), &record()).expect("written");
     let mut back = store::read_run(folder.path()).expect("read");
     let mse = &mut back.scenes[0].summaries[0].mse;
-    assert!(mse.mean.is_nan() && mse.half_width == f64::INFINITY);
+    assert!(mse.mean.is_nan() && (mse.low, mse.high) == (f64::NEG_INFINITY, f64::INFINITY));
     let mut expected = record();
     (mse.mean, expected.scenes[0].summaries[0].mse.mean) = (0.0, 0.0);
     assert_eq!(back, expected);
@@ -148,8 +165,8 @@ fn the_schema_is_the_recorded_one() {
     RowWriter::create(folder.path()).expect("begun").write(&row(0)).expect("written");
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("read");
     // A change here is a change of schema: raise `SCHEMA` with it.
-    insta::assert_snapshot!("schema_1_run_json", read(store::RUN_FILE));
-    insta::assert_snapshot!("schema_1_runs_csv", read(store::ROWS_FILE));
+    insta::assert_snapshot!("schema_2_run_json", read(store::RUN_FILE));
+    insta::assert_snapshot!("schema_2_runs_csv", read(store::ROWS_FILE));
 }
 
 #[test]
@@ -164,7 +181,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
         fs::write(&path, &whole[..cut]).expect("written");
         let rows = store::read_rows(folder.path()).expect("read");
         assert!(rows.cut_short && rows.rows == [row(0), row(1)], "cut at {cut}");
-        let (mut writer, finished) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
+        let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
         assert_eq!(finished, [row(0), row(1)]);
         writer.write(&row(2)).expect("written");
         assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -172,7 +189,7 @@ fn a_line_cut_short_is_left_out_and_removed_on_resuming() {
     // Even the header can be cut short.
     fs::write(&path, &whole[..9]).expect("written");
     assert!(store::read_rows(folder.path()).expect("read").cut_short);
-    let (mut writer, finished) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
+    let (mut writer, finished) = RowWriter::resume(folder.path()).expect("resumed");
     assert!(finished.is_empty());
     (0..3).for_each(|run| writer.write(&row(run)).expect("written"));
     assert_eq!(fs::read_to_string(&path).expect("read"), whole);
@@ -189,9 +206,9 @@ fn what_is_no_row_is_named_by_file_line_and_column() {
         ("inf", "fast", "runs.csv:2: `mse`: `fast` is not a number"),
         (",64,", ",-1,", "runs.csv:2: `passes`: `-1` is not a whole number"),
         (",64,", ",,", "runs.csv:2: `passes`: `` is not a whole number"),
-        (",64,", ",64,64,", "runs.csv:2: 25 fields where 24 are expected"),
-        ("cpu_s", "cpu_ms", "runs.csv:1: column 5 is `setup_cpu_ms` where schema 1 has `setup_cpu_s`"),
-        (",error\n", "\n", "runs.csv:1: 23 columns where schema 1 has 24"),
+        (",64,", ",64,64,", "runs.csv:2: 29 fields where 28 are expected"),
+        ("cpu_s", "cpu_ms", "runs.csv:1: column 5 is `setup_cpu_ms` where schema 2 has `setup_cpu_s`"),
+        (",error\n", "\n", "runs.csv:1: 27 columns where schema 2 has 28"),
     ] {
         fs::write(&path, whole.replacen(from, to, 1)).expect("written");
         let error = store::read_rows(folder.path()).expect_err("not a row").to_string();
@@ -206,7 +223,7 @@ fn records_of_another_schema_or_cut_short_are_refused() {
     let path = folder.path().join(store::RUN_FILE);
     let whole = fs::read_to_string(&path).expect("read");
     for (from, to, expected) in [
-        ("\"schema\": 1", "\"schema\": 2", "`schema`: is 2, this program reads 1"),
+        ("\"schema\": 2", "\"schema\": 1", "`schema`: is 1, this program reads 2"),
         ("\"seed\": 1", "\"sed\": 1", "run.json:8: unknown field `sed`"),
         ("\"inf\"", "\"fast\"", "expected a number, \"inf\", \"-inf\" or \"nan\""),
     ] {
@@ -221,11 +238,11 @@ fn records_of_another_schema_or_cut_short_are_refused() {
 #[test]
 fn of_rows_that_stand_twice_the_last_is_gone_on_with() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (mut writer, none) = RowWriter::resume(folder.path(), |rows| rows).expect("begun");
+    let (mut writer, none) = RowWriter::resume(folder.path()).expect("begun");
     assert!(none.is_empty());
     let other = Row { cpu_s: 7.0, ..row(0) };
     [row(0), row(1), other.clone()].iter().for_each(|row| writer.write(row).expect("written"));
-    let (_, rows) = RowWriter::resume(folder.path(), |rows| rows).expect("resumed");
+    let (_, rows) = RowWriter::resume(folder.path()).expect("resumed");
     assert_eq!(rows, [row(1), other]);
     assert_eq!(store::read_rows(folder.path()).expect("read").rows, rows);
 }

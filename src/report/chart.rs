@@ -147,7 +147,7 @@ impl Chart {
         let off: Vec<f64> = points.flat_map(|p| [p.low, p.high]).filter(|&end| !axis.holds(end)).collect();
         let kinds = [
             (off.iter().any(|end| end.is_finite()), "open arrow: the interval goes on"),
-            (off.iter().any(|end| end.is_infinite()), "filled arrow: no end, too heavy a tail to say"),
+            (off.iter().any(|end| end.is_infinite()), "filled arrow: too heavy a tail to say"),
         ];
         kinds.into_iter().filter_map(|(is_there, meaning)| is_there.then_some(meaning))
     }

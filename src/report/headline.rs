@@ -17,8 +17,7 @@ pub(super) fn against_time(scene: &SceneRecord, summaries: &[&Summary]) -> Sheet
         columns.push(Column::new("claim", |s| claim(s).to_owned()));
     }
     if ranked {
-        columns.push(Column::new("rank", rank));
-        columns.push(Column::new("letters", |s| s.letters.clone()));
+        columns.push(Column::new("rank,\nletters", rank));
     }
     for (at, &error) in scene.errors.iter().enumerate() {
         let mark = if ranked && at == scene.ranked_by as usize { RANKS } else { "" };
@@ -74,7 +73,7 @@ fn below(scene: &SceneRecord, summaries: &[&Summary]) -> Vec<String> {
             grouped(receivers)
         ));
     }
-    below.push("±: 95 % intervals over runs, corrected for skewness.".to_owned());
+    below.push("±9 % or -8 +15 %: 95 % intervals over runs, corrected for skewness.".to_owned());
     if any(&|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
@@ -116,12 +115,14 @@ fn unless_floor(summary: &Summary, shown: Estimate) -> Estimate {
     if summary.claim == Claim::Floor { Estimate::certain(NONE) } else { shown }
 }
 
-fn rank(summary: &Summary) -> String {
-    match summary.rank {
+/// The ranks that it may have, and its letters.
+fn rank(summary: &Summary) -> Estimate {
+    let figure = match summary.rank {
         Some([first, last]) if first == last => first.to_string(),
         Some([first, last]) => format!("{first}-{last}"),
         None => NONE.to_owned(),
-    }
+    };
+    Estimate { figure, interval: summary.letters.clone() }
 }
 
 fn claim(summary: &Summary) -> &'static str {

@@ -66,8 +66,8 @@ impl Estimate {
         if interval.mean == 0.0 { Self::certain("exact") } else { Self::of(interval) }
     }
 
-    /// A figure with its interval as a share of it, or as numbers of their own where that is larger than the figure:
-    /// `0.243 ±9.1 %`, `0.243 -8 +15 %`, `-0.02 ±0.31`; with one end, a bound: `>0.21 †`.
+    /// A figure with its interval as a share of it, or as numbers of their own where it may be 0: `0.243 ±9.1 %`,
+    /// `0.243 -8 +15 %`, `-0.02 ±0.31`; with one end, a bound: `>0.21 †`.
     pub(super) fn of(interval: Interval) -> Self {
         let Interval { mean, low, high } = interval;
         if mean.is_nan() {
@@ -83,12 +83,11 @@ impl Estimate {
         }
         let figure = digits(mean, allowed(mean, widest));
         let shares = off.map(|off| 100.0 * off / mean.abs());
-        let interval = if shares[0].max(shares[1]) > 99.5 {
+        let interval = if interval.holds(0.0) {
             either_side(off.map(|off| digits(off, 2)), "")
-        } else if shares[0].max(shares[1]) >= 9.95 {
-            either_side(shares.map(|share| format!("{share:.0}")), " %")
         } else {
-            either_side(shares.map(|share| format!("{share:.1}")), " %")
+            let decimals = if shares[0].max(shares[1]) < 9.95 { 1 } else { 0 };
+            either_side(shares.map(|share| format!("{share:.decimals$}")), " %")
         };
         Self { figure, interval }
     }
@@ -204,7 +203,7 @@ mod tests {
         assert_eq!(of(0.012_34, 0.011_84, 0.012_84), "0.0123 ±4.1 %");
         assert_eq!(of(0.243, 0.223_56, 0.279_45), "0.243 -8 +15 %");
         assert_eq!(of(0.243, 0.113, 0.373), "0.24 ±53 %");
-        assert_eq!(of(243.0, 23.0, 763.0), "240 -220 +520");
+        assert_eq!(of(243.0, 100.0, 763.0), "243 -59 +214 %");
         assert_eq!(of(-1e-6, -1e-3 - 1e-6, 1e-3 - 1e-6), "-1e-6 ±0.0010");
         assert_eq!(of(1.0, 1.0, 1.0), "1.00");
         assert_eq!(of(f64::NAN, f64::NAN, f64::NAN), NONE);

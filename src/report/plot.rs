@@ -40,7 +40,7 @@ pub fn plot(scene: &SceneRecord) -> Result<String> {
         remarks.push((if remarks.is_empty() { 34 } else { 25 }, "dotted: other renderers".to_owned()));
     }
     remarks.extend(exact.into_iter().enumerate().map(|(at, text)| (if at == 0 { 25 } else { 19 }, text)));
-    let runs = scene.summaries.iter().map(|s| s.runs).max().unwrap_or(0);
+    let runs = scene.summaries.iter().filter(|s| !s.curve.is_empty()).map(|s| s.runs).max().unwrap_or(0);
     let scale = |label: &str| Scale { label: label.to_owned(), logarithmic: true };
     Chart {
         title: scene.name.clone(),

@@ -136,8 +136,11 @@ impl Sheet {
                 Entry::Figure(estimate) => Cell::new(figure(estimate)).set_alignment(CellAlignment::Right),
             }));
         }
-        for (column, _) in table.column_iter_mut().zip(&self.heads).filter(|(_, head)| !head.left) {
-            column.set_cell_alignment(CellAlignment::Right);
+        for (column, head) in table.column_iter_mut().zip(&self.heads) {
+            column.set_padding((1, 0));
+            if !head.left {
+                column.set_cell_alignment(CellAlignment::Right);
+            }
         }
         table.trim_fmt()
     }
