@@ -153,7 +153,8 @@ fn record(path: &Path) -> String {
     let record: serde_json::Value = serde_json::from_slice(&fs::read(path).expect("read")).expect("JSON");
     let mut lines: Vec<String> =
         ["plan", "finished", "notes", "tables", "pictures"].iter().map(|key| record[key].to_string()).collect();
-    for summary in record["scenes"].as_array().into_iter().flatten().flat_map(|s| s["summaries"].as_array()).flatten() {
+    for summary in record["scenes"].as_array().into_iter().flatten().filter_map(|s| s["summaries"].as_array()).flatten()
+    {
         let keys = ["strategy", "runs", "passes", "rel_mse", "rel_bias2", "mean_bias", "counts", "error", "skipped"];
         lines.extend(keys.iter().map(|key| summary[key].to_string()));
     }
