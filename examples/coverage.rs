@@ -8,11 +8,12 @@
 //! made up, with 3 % of noise for each run, so that other work on the machine has no part in it. Ten minutes of a core.
 
 use citylights::base::error::{Error, Result};
-use citylights::base::random::{RunKey, Stream};
+use citylights::base::random::Stream;
 use citylights::measure::curve::Curve;
 use citylights::measure::engine::build_seed;
 use citylights::measure::errors::Truth;
-use citylights::measure::experiment::Runs;
+use citylights::measure::experiment::{Runs, numbers};
+use citylights::measure::figure::Figure;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::reference::Reference;
 use citylights::measure::summary::{blank, summarise};
@@ -83,16 +84,16 @@ impl Everything {
     fn render(target: &Target<'_>, truth: &Truth, strategy: &Configured, budgets: &[u32], seed: u64) -> Result<Self> {
         let receivers = &target.frame;
         let run = |run: u32| -> Result<Run> {
-            let key = RunKey { seed, run };
-            let sampler = strategy.build(BuildContext { stage: target.stage, seed: build_seed(key) })?;
-            let plan = Plan { stage: target.stage, receivers, sampler: &*sampler, key };
-            let mut film = Film::new(receivers.len());
             let one = |&passes: &u32| {
-                plan.run(passes - film.passes(), &mut film);
+                let key = numbers(seed, run, passes);
+                let sampler = strategy.build(BuildContext { stage: target.stage, seed: build_seed(key) })?;
+                let plan = Plan { stage: target.stage, receivers, sampler: &*sampler, key };
+                let mut film = Film::new(receivers.len());
+                plan.run(passes, &mut film);
                 let row = Row::blank("scene".into(), strategy.name().into(), run, passes);
-                (truth.errors(&film.image()).written_to(row), film.image())
+                Ok((truth.errors(&film.image()).written_to(row), film.image()))
             };
-            Ok(budgets.iter().map(one).collect())
+            budgets.iter().map(one).collect()
         };
         Ok(Self((0..ALL as u32).into_par_iter().map(run).collect::<Result<_>>()?))
     }
@@ -120,7 +121,7 @@ impl Everything {
         let ladder: Vec<u32> = self.0[0].iter().map(|(row, _)| row.passes).filter(|&passes| passes <= last).collect();
         let (summary, _) = summarise(blank(strategy), truth, &runs, &ladder);
         let curve = Curve::of(&runs, &ladder);
-        let until = |error| curve.seconds_to(error, |_| 0.0).1.interval();
+        let until = |error| curve.seconds_to(error, Figure::certain(0.0)).1.interval();
         [summary.rel_mse, summary.variance_seconds, until(0.1), until(0.01)]
     }
 
