@@ -211,7 +211,7 @@ fn names_that_are_not_utf8_are_taken() {
     use std::os::unix::ffi::OsStrExt;
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join(std::ffi::OsStr::from_bytes(b"lamp\xff.toml"));
-    std::fs::write(&file, LAMP).expect("written");
+    std::fs::write(&file, include_str!("data/street.toml")).expect("written");
     for verb in [
         "compare --budget 1 --repeats 2 -s uniform",
         "study strategies --pixels 4 --receivers 4 --repeats 2 -s uniform --scene",

@@ -143,21 +143,27 @@ fn spin(rounds: u64) -> u64 {
     (0..rounds).fold(1, |x: u64, i| std::hint::black_box(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i)))
 }
 
+fn work(rounds: u64) {
+    std::hint::black_box(spin(rounds));
+}
+
 const ROUNDS: u64 = 2_000_000;
 
 #[test]
 fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
     let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
-    let plain = || (0..4).for_each(|_| drop(spin(ROUNDS)));
-    let scope = || rayon::scope(|scope| (0..4).for_each(|_| scope.spawn(|_| drop(spin(ROUNDS)))));
-    let join = || drop(rayon::join(|| spin(2 * ROUNDS), || spin(2 * ROUNDS)));
-    let iterator = || drop((0..4).into_par_iter().map(|_| spin(ROUNDS)).collect::<Vec<_>>());
+    let plain = || (0..4).for_each(|_| work(ROUNDS));
+    let scope = || rayon::scope(|scope| (0..4).for_each(|_| scope.spawn(|_| work(ROUNDS))));
+    let join = || {
+        rayon::join(|| work(2 * ROUNDS), || work(2 * ROUNDS));
+    };
+    let iterator = || (0..4).into_par_iter().for_each(|_| work(ROUNDS));
     let spawn = || {
         static DONE: AtomicU64 = AtomicU64::new(0);
         DONE.store(0, Ordering::SeqCst);
         for _ in 0..4 {
             rayon::spawn(|| {
-                spin(ROUNDS);
+                work(ROUNDS);
                 DONE.fetch_add(1, Ordering::SeqCst);
             });
         }
@@ -198,13 +204,34 @@ fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
 fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
     let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
     let stray = || {
-        let thread = std::thread::spawn(|| spin(20 * ROUNDS));
-        drop(thread.join());
+        let thread = std::thread::spawn(|| work(20 * ROUNDS));
+        thread.join().expect("done");
     };
-    let account = engine.run("stray", &[(), ()], &Unobserved, |(), _| Ok(stray()), |(), ()| Ok(())).expect("done");
+    let account = engine
+        .run(
+            "stray",
+            &[(), ()],
+            &Unobserved,
+            |(), _| {
+                stray();
+                Ok(())
+            },
+            |(), ()| Ok(()),
+        )
+        .expect("done");
     assert!(account.stray_share() > 0.8, "{account:?}");
-    let account =
-        engine.run("own", &[(), ()], &Unobserved, |(), _| Ok(drop(spin(20 * ROUNDS))), |(), ()| Ok(())).expect("done");
+    let account = engine
+        .run(
+            "own",
+            &[(), ()],
+            &Unobserved,
+            |(), _| {
+                work(20 * ROUNDS);
+                Ok(())
+            },
+            |(), ()| Ok(()),
+        )
+        .expect("done");
     // Other tests of this process run beside this one.
     println!("without: {account:?}");
 }

@@ -153,7 +153,8 @@ fn record(path: &Path) -> String {
     let record: serde_json::Value = serde_json::from_slice(&fs::read(path).expect("read")).expect("JSON");
     let mut lines: Vec<String> =
         ["plan", "finished", "notes", "tables", "pictures"].iter().map(|key| record[key].to_string()).collect();
-    for summary in record["scenes"].as_array().into_iter().flatten().flat_map(|s| s["summaries"].as_array()).flatten() {
+    for summary in record["scenes"].as_array().into_iter().flatten().filter_map(|s| s["summaries"].as_array()).flatten()
+    {
         let keys = ["strategy", "runs", "passes", "rel_mse", "rel_bias2", "mean_bias", "counts", "error", "skipped"];
         lines.extend(keys.iter().map(|key| summary[key].to_string()));
     }
@@ -194,25 +195,33 @@ fn two_hundred_kills_and_fifty_double_starts() {
         "offsets",
         "cutoff -s influence,influence-tail",
         "scaling -s uniform,power",
-        "soft-shadows --resolution 24x16",
     ];
     let studies = studies.map(|study| format!("study {study} {STUDY}"));
-    let jobs: Vec<Job> =
-        std::iter::once(COMPARE.to_owned()).chain(studies).map(|arguments| Job::new(&arguments)).collect();
-    for job in &jobs {
-        println!("{:?} undisturbed: {}", job.takes, job.arguments.join(" "));
-    }
-    let (mut killed, mut late, mut folders, mut refused) = (0, 0, 0, 0);
-    while killed < 200 {
-        // Half of them comparisons.
-        let job = &jobs[if folders % 2 == 0 { 0 } else { 1 + folders / 2 % (jobs.len() - 1) }];
-        let kills = job.kill(1 + folders as u32 % 4, &format!("killed {folders}"), &mut random);
+    // Half of them comparisons.
+    let compare = || std::iter::repeat_n(COMPARE.to_owned(), studies.len());
+    let jobs: Vec<Job> = compare().chain(studies.clone()).map(|arguments| Job::new(&arguments)).collect();
+    jobs.iter().for_each(|job| println!("{:?} undisturbed: {}", job.takes, job.arguments.join(" ")));
+    let (mut killed, mut late, mut folders) = (0, 0, 0);
+    for job in jobs.iter().cycle() {
+        if killed >= 200 {
+            break;
+        }
+        let kills = job.kill(1 + folders % 4, &format!("killed {folders}"), &mut random);
         (killed, late, folders) = (killed + kills.killed, late + kills.late, folders + 1);
     }
     println!("{killed} kills in {folders} folders, {late} more after the end: all as undisturbed");
-    for n in 0..50 {
-        let job = &jobs[if n % 2 == 0 { 0 } else { 1 + n / 2 % (jobs.len() - 1) }];
-        refused += usize::from(job.start_twice(&format!("twice {n}"), &mut random));
-    }
+    let starts = jobs.iter().cycle().take(50).enumerate();
+    let refused = starts.filter(|(n, job)| job.start_twice(&format!("twice {n}"), &mut random)).count();
     println!("50 double starts, {refused} told that the folder is in use: all as undisturbed");
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn long_studies_go_on_too() {
+    let mut random = Stream::keyed(&[10, 11, 12]);
+    for study in ["soft-shadows --resolution 24x16", "visible -s power,visible"] {
+        let job = Job::new(&format!("study {study} {STUDY}"));
+        let kills = job.kill(8, "killed", &mut random);
+        println!("{:?} undisturbed, {} kills: {}", job.takes, kills.killed, job.arguments.join(" "));
+    }
 }

@@ -113,7 +113,8 @@ fn index(largest: &[f64]) -> f64 {
     half as f64 / logs
 }
 
-/// Bounds of the mean of positive `values`, one a run, at a confidence within (0, 1).
+/// Bounds of the mean of positive `values`, one a run, at a confidence within (0, 1); of a figure that is a smooth
+/// function of means over the same runs, where the values are what each run says of it (their mean must be the figure).
 ///
 /// Student's t on the log scale, and above it what [`Tail`] says may be missing, as if independent.
 pub fn mean(values: &[f64], tail: &Tail, confidence: f64) -> Bounds {
@@ -125,58 +126,6 @@ pub fn mean(values: &[f64], tail: &Tail, confidence: f64) -> Bounds {
     let noise = moments.half_width(confidence);
     let high = if tail.heavy { f64::INFINITY } else { centre + noise.hypot(tail.missing(confidence)) };
     Bounds { low: centre * (-noise / centre).exp(), high }
-}
-
-/// A positive figure, as what each run says of it and what the runs may be missing.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
-    values: Vec<f64>,
-    tail: Tail,
-}
-
-impl Estimate {
-    /// The mean of `values`, one a run.
-    pub fn new(values: Vec<f64>, tail: Tail) -> Self {
-        Self { values, tail }
-    }
-
-    /// A smooth function of means over the same runs: variance times seconds, say. It must not fall as a mean with a
-    /// tail rises.
-    ///
-    /// Its runs are those of its first-order change with each mean.
-    pub fn of(means: &[&Self], function: impl Fn(&[f64]) -> f64) -> Self {
-        // Of a mean: the central difference errs by 1e-8 of the slope, rounding by 1e-12.
-        const STEP: f64 = 1e-4;
-        let at: Vec<f64> = means.iter().map(|mean| mean.value()).collect();
-        let value = function(&at);
-        let (mut values, mut tail) = (vec![value; means.first().map_or(0, |mean| mean.values.len())], Tail::NONE);
-        for (b, mean) in means.iter().enumerate() {
-            let shifted = |by: f64| {
-                let mut at = at.clone();
-                at[b] *= 1.0 + by;
-                function(&at)
-            };
-            let slope = (shifted(STEP) - shifted(-STEP)) / (2.0 * STEP * at[b]);
-            values.iter_mut().zip(&mean.values).for_each(|(value, x)| *value += slope * (x - at[b]));
-            tail = tail.plus(mean.tail.times(slope));
-        }
-        Self { values, tail }
-    }
-
-    /// The figure itself.
-    pub fn value(&self) -> f64 {
-        Moments::of(self.values.iter().copied()).mean
-    }
-
-    /// Whether its tail is too heavy to say how large it may be.
-    pub fn heavy(&self) -> bool {
-        self.tail.heavy
-    }
-
-    /// Where it lies, at a confidence within (0, 1).
-    pub fn bounds(&self, confidence: f64) -> Bounds {
-        mean(&self.values, &self.tail, confidence)
-    }
 }
 
 /// Bounds of the mean of `values` of either sign, one a run, at a confidence within (0, 1): Student's t freed of the
@@ -283,18 +232,6 @@ mod tests {
         assert!(bounds.low == 8.0 && (bounds.high - 8.0 - tail.missing(0.95)).abs() < 1e-12, "{bounds:?}");
         assert_eq!(mean(&[1.0], &Tail::NONE, 0.95), Bounds::NONE);
         assert_eq!(mean(&[1.0, f64::NAN], &Tail::NONE, 0.95), Bounds::NONE);
-    }
-
-    #[test]
-    fn a_product_has_the_spread_and_the_tail_of_both() {
-        let error = Estimate::new(vec![1.0, 3.0, 2.0, 2.0], Tail::of(&[2.0; 4], &[[0.1; LARGEST]; 4]));
-        let seconds = Estimate::new(vec![5.0, 5.0, 6.0, 4.0], Tail::NONE);
-        let product = Estimate::of(&[&error, &seconds], |m| m[0] * m[1]);
-        for (value, expected) in product.values.iter().zip([5.0, 15.0, 12.0, 8.0]) {
-            assert!((value - expected).abs() < 1e-9, "{product:?}");
-        }
-        assert!((product.value() - 10.0).abs() < 1e-9);
-        assert!((product.tail.missing(0.95) / error.tail.missing(0.95) - 5.0).abs() < 1e-6);
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
-//! statistics, intervals, rankings, curves of error against time, relative error, colour, files, errors.
+//! statistics, intervals, rankings, relative error, colour, files, errors.
 
 pub mod colour;
-pub mod curve;
 pub mod discrete;
 pub mod double;
 pub mod draws;

@@ -5,7 +5,6 @@
 
 use super::experiment::Runs;
 use super::figure::{self, Figure};
-use crate::base::interval::Tail;
 use crate::record::{Read, Row};
 
 /// The runs of each budget, smallest first: the same runs at each.
@@ -22,23 +21,20 @@ struct Point {
     error: f64,
 }
 
-/// How far an error is raised, as a share of it, to see what follows from it.
-const STEP: f64 = 1e-4;
-
 impl<'a> Curve<'a> {
     /// The curve of a strategy with these budgets.
     pub fn of(runs: &'a Runs, ladder: &[u32]) -> Self {
         Self { budgets: ladder.iter().map(|&passes| runs.at(passes)).filter(|rows| !rows.is_empty()).collect() }
     }
 
-    /// How many runs each budget has.
-    pub fn runs(&self) -> usize {
-        self.budgets.iter().map(Vec::len).min().unwrap_or(0)
+    /// Whether anything was measured.
+    pub fn is_empty(&self) -> bool {
+        self.budgets.is_empty()
     }
 
-    /// CPU seconds, set-up included, to a relMSE of `error`. `bias2` gives the squared bias that counts, without a run.
-    pub fn seconds_to(&self, error: f64, bias2: impl Fn(Option<usize>) -> f64) -> (Read, Figure) {
-        self.read(bias2, |points, bias2| {
+    /// CPU seconds, set-up included, to a relMSE of `error`, down to the squared bias that counts.
+    pub fn seconds_to(&self, error: f64, bias2: Figure) -> (Read, Figure) {
+        self.read(bias2, move |points, bias2| {
             let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
             match points.iter().position(|point| point.error <= error) {
                 Some(0) => (Read::Measured, points[0].seconds),
@@ -53,9 +49,9 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// relMSE after so many CPU seconds, set-up included. `bias2` is as above.
-    pub fn error_at(&self, seconds: f64, bias2: impl Fn(Option<usize>) -> f64) -> (Read, Figure) {
-        self.read(bias2, |points, bias2| {
+    /// relMSE after so many CPU seconds, set-up included, down to the squared bias that counts.
+    pub fn error_at(&self, seconds: f64, bias2: Figure) -> (Read, Figure) {
+        self.read(bias2, move |points, bias2| {
             let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
             match points.iter().position(|point| point.seconds >= seconds) {
                 Some(0) => (if points[0].seconds > seconds { Read::TooSoon } else { Read::Measured }, points[0].error),
@@ -69,34 +65,20 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// What `of` reads off the curve, with what each run says of it.
-    fn read(&self, bias2: impl Fn(Option<usize>) -> f64, of: impl Fn(&[Point], f64) -> (Read, f64)) -> (Read, Figure) {
-        let all = self.points(None);
-        let (how, estimate) = of(&all, bias2(None));
-        // The tail of each budget's error counts as far as the figure follows that error.
-        let tail = self.budgets.iter().enumerate().fold(Tail::NONE, |tail, (i, rows)| {
-            let mut raised = all.clone();
-            let step = STEP * raised[i].error;
-            raised[i].error += step;
-            let slope = (of(&raised, bias2(None)).1 - estimate) / step;
-            if slope.is_finite() && slope != 0.0 { tail.plus(figure::tail(rows).times(slope)) } else { tail }
-        });
-        let figure = Figure::jackknife(self.runs(), tail, |without| of(&self.points(without), bias2(without)).1);
-        (how, figure)
-    }
-
-    fn points(&self, without: Option<usize>) -> Vec<Point> {
-        let mean = |rows: &[&Row], value: fn(&Row) -> f64| {
-            let kept = rows.iter().enumerate().filter(|(run, _)| Some(*run) != without);
-            let (sum, n) = kept.fold((0.0, 0usize), |(sum, n), (_, row)| (sum + value(row), n + 1));
-            sum / n as f64
+    /// What `of` reads off the curve. Budgets are independent of one another, and times of errors.
+    fn read(&self, bias2: Figure, of: impl Fn(&[Point], f64) -> (Read, f64) + Send + Sync + 'static) -> (Read, Figure) {
+        let n = self.budgets.len();
+        let setups: Vec<f64> = self.budgets.iter().map(|rows| figure::mean(rows, |r| r.setup_cpu_s).estimate).collect();
+        let mut parts: Vec<Figure> = self.budgets.iter().map(|rows| figure::mean(rows, Row::total_cpu_s)).collect();
+        parts.extend(self.budgets.iter().map(|rows| figure::error(rows)));
+        parts.push(bias2);
+        let read = move |parts: &[f64]| {
+            let point = |i: usize| Point { setup_s: setups[i], seconds: parts[i], error: parts[n + i] };
+            of(&(0..n).map(point).collect::<Vec<Point>>(), parts[2 * n])
         };
-        let point = |rows: &Vec<&Row>| Point {
-            setup_s: mean(rows, |row| row.setup_cpu_s),
-            seconds: mean(rows, |row| row.setup_cpu_s + row.cpu_s),
-            error: mean(rows, |row| row.rel_mse),
-        };
-        self.budgets.iter().map(point).collect()
+        let estimates: Vec<f64> = parts.iter().map(|part| part.estimate).collect();
+        let how = read(&estimates).0;
+        (how, Figure::of(parts, move |parts| read(parts).1))
     }
 }
 

@@ -8,7 +8,7 @@ use super::errors::Truth;
 use super::observer::Observer;
 use super::target::Target;
 use crate::base::error::Result;
-use crate::base::random::RunKey;
+use crate::base::random::{RunKey, hash};
 use crate::record::Row;
 use crate::strategy::registry::Configured;
 use glam::Vec3;
@@ -71,6 +71,11 @@ impl Runs {
     }
 }
 
+/// Names the random numbers of a run at a budget: budgets share none, so that what they say is independent.
+pub fn numbers(seed: u64, run: u32, passes: u32) -> RunKey {
+    RunKey { seed: hash(&[seed, u64::from(passes)]), run }
+}
+
 /// One (strategy, run, budget).
 struct Unit {
     strategy: usize,
@@ -101,7 +106,7 @@ impl Experiment<'_> {
                     stage: self.target.stage,
                     receivers: &self.target.frame,
                     strategy: self.strategies[unit.strategy],
-                    key: RunKey { seed: self.seed, run: unit.run },
+                    key: numbers(self.seed, unit.run, unit.passes),
                     passes: unit.passes,
                 };
                 Ok(self.found(unit, block.run(meter)))

@@ -49,19 +49,15 @@ impl Entry<'_> {
         self.summary.error_at = times_s.iter().map(|&seconds| self.error_at(seconds)).collect();
     }
 
-    /// CPU seconds to an error, with what each run says of them.
+    /// CPU seconds to an error.
     fn seconds_to(&self, error: f64) -> (Reading, Figure) {
-        let (how, figure) = self.curve.seconds_to(error, |without| self.counted_bias2(without));
+        let (how, figure) = self.curve.seconds_to(error, self.jackknife.counted_bias2(&self.summary.claim));
         (reading(error, how, &figure), figure)
     }
 
     fn error_at(&self, seconds: f64) -> Reading {
-        let (how, figure) = self.curve.error_at(seconds, |without| self.counted_bias2(without));
+        let (how, figure) = self.curve.error_at(seconds, self.jackknife.counted_bias2(&self.summary.claim));
         reading(seconds, how, &figure)
-    }
-
-    fn counted_bias2(&self, without: Option<usize>) -> f64 {
-        self.jackknife.counted_bias2(&self.summary.claim, without)
     }
 
     /// Whether it stands among those that are ranked: unbiased, and with a time to the error.
@@ -71,7 +67,7 @@ impl Entry<'_> {
     }
 
     fn is_candidate(&self) -> bool {
-        self.summary.claim == Claim::Unbiased && self.summary.error.is_none() && self.curve.runs() > 0
+        self.summary.claim == Claim::Unbiased && self.summary.error.is_none() && !self.curve.is_empty()
     }
 }
 

@@ -7,7 +7,7 @@
 //! Receivers and runs are as many as the counted work allows, until the interval of the oracle's own error is narrow.
 
 use super::compare::Options;
-use super::errors::Truth;
+use super::errors::{Errors, Truth};
 use super::experiment::Runs;
 use super::figure::Figure;
 use super::observer::Observer;
@@ -15,6 +15,7 @@ use super::plan::PASSES;
 use super::summary::{blank, counts};
 use super::target::{self, Target};
 use crate::base::error::Result;
+use crate::base::interval::Tail;
 use crate::base::random::RunKey;
 use crate::record::{Interval, Summary};
 use crate::render::counts::Counts;
@@ -84,11 +85,11 @@ pub(super) fn settle(
             continue;
         }
         let Some(rung) = rungs.iter().rposition(|&rung| rung <= summary.passes) else { continue };
-        let at = |image: &Vec<Vec3>| truth.rel_mse_at(&floor.places, floor.places.iter().map(|&i| image[i]));
-        let own = Figure::mean(runs.images.iter().map(at).collect());
+        let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
+        let own = figure(runs.images.iter().map(at).collect());
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
         // An exact oracle has no multiple, and an error below the reference's own noise none that means anything.
-        summary.times_oracle = own.over(&floor.errors[rung]).map(|ratio| ratio.times(samples));
+        summary.times_oracle = own.over(floor.figure(rung)).map(|ratio| ratio.interval().times(samples));
     }
     Ok(())
 }
@@ -97,8 +98,25 @@ pub(super) fn settle(
 struct Floor {
     /// Where it was run, as places among the measured receivers.
     places: Vec<usize>,
-    /// relMSE after each number of passes.
-    errors: Vec<Figure>,
+    /// The truth there.
+    truth: Truth,
+    /// Errors of each run after each number of passes.
+    runs: Vec<Vec<Errors>>,
+}
+
+impl Floor {
+    /// relMSE after a number of passes.
+    fn figure(&self, rung: usize) -> Figure {
+        figure(self.runs.iter().map(|errors| errors[rung]).collect())
+    }
+}
+
+/// The mean relMSE of runs with these errors.
+fn figure(errors: Vec<Errors>) -> Figure {
+    let values: Vec<f64> = errors.iter().map(|errors| errors.rel_mse).collect();
+    let largest: Vec<_> = errors.iter().map(|errors| errors.largest).collect();
+    let tail = Tail::of(&values, &largest);
+    Figure::error(values, tail)
 }
 
 /// What oracles are run on.
@@ -134,35 +152,36 @@ impl Ground<'_> {
         let receivers: Vec<Receiver> = places.iter().map(|&i| measured[i]).collect();
         let rounds = (affordable / receivers.len().max(1)).clamp(1, ROUNDS as usize) as u32;
         watch.begin("oracle", u64::from(rounds * ROUND));
-        let mut runs: Vec<Vec<f64>> = Vec::new();
-        let errors = loop {
-            let first = runs.len() as u32;
+        let mut floor = Floor { truth: self.truth.only(&places), places, runs: Vec::new() };
+        loop {
+            let first = floor.runs.len() as u32;
             let more = (first..first + ROUND).into_par_iter().map(|run| {
                 watch.check()?;
-                let errors = self.errors(&*sampler, &receivers, &places, run);
+                let errors = self.errors(&*sampler, &receivers, &floor.truth, run);
                 watch.advance(1);
                 Ok(errors)
             });
-            runs.extend(more.collect::<Result<Vec<_>>>()?);
-            let errors: Vec<Figure> = (0..self.rungs.len())
-                .map(|rung| Figure::mean(runs.iter().map(|errors| errors[rung]).collect()))
-                .collect();
-            let narrow = |figure: &Figure| figure.interval().half_width() <= NARROW * figure.estimate.abs();
-            if errors.iter().all(narrow) || runs.len() as u32 >= rounds * ROUND {
-                break errors;
+            let more = more.collect::<Result<Vec<_>>>()?;
+            floor.runs.extend(more);
+            let narrow = |rung| {
+                let found = floor.figure(rung).interval();
+                found.half_width() <= NARROW * found.mean.abs()
+            };
+            if (0..self.rungs.len()).all(narrow) || floor.runs.len() as u32 >= rounds * ROUND {
+                break;
             }
-        };
+        }
         watch.end();
         let summary = Summary {
-            runs: runs.len() as u32,
+            runs: floor.runs.len() as u32,
             passes,
             receivers: Some(receivers.len() as u64),
-            rel_mse: errors[self.rungs.len() - 1].interval(),
+            rel_mse: floor.figure(self.rungs.len() - 1).interval(),
             heap_bytes: sampler.heap_bytes() as u64,
             counts: counts(work),
             ..blank
         };
-        Ok((summary, Some(Floor { places, errors })))
+        Ok((summary, Some(floor)))
     }
 
     /// Work of a few arrivals, over as many passes as every strategy's is counted.
@@ -172,8 +191,8 @@ impl Ground<'_> {
         Plan { stage: self.target.stage, receivers: &few, sampler, key }.run_counting(PASSES, &mut Film::new(few.len()))
     }
 
-    /// relMSE of a run after each number of passes. Each receiver is arrived at once, and its passes shaded one by one.
-    fn errors(&self, sampler: &dyn AnySampler, receivers: &[Receiver], places: &[usize], run: u32) -> Vec<f64> {
+    /// Errors of a run after each number of passes. Each receiver is arrived at once, and its passes shaded one by one.
+    fn errors(&self, sampler: &dyn AnySampler, receivers: &[Receiver], truth: &Truth, run: u32) -> Vec<Errors> {
         let stage = self.target.stage;
         let key = RunKey { seed: self.seed, run };
         let most = self.rungs.last().copied().unwrap_or(0);
@@ -197,6 +216,6 @@ impl Ground<'_> {
                 }
             }
         }
-        images.into_iter().map(|image| self.truth.rel_mse_at(places, image.into_iter())).collect()
+        images.iter().map(|image| truth.errors(image)).collect()
     }
 }

@@ -17,6 +17,7 @@ use crate::render::refined::{FALL, Price, refined};
 use crate::scene::Scene;
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
+use crate::verify::halves;
 use crate::visibility::stage::Stage;
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -182,6 +183,10 @@ impl Reference {
             done?.into_iter().for_each(|(tile, values)| tiles[tile] = Some(values));
         }
         let values: Vec<Exact> = tiles.into_iter().flatten().flatten().collect();
+        let check = halves(&values);
+        if !check.passed {
+            return Err(Error::Invalid(format!("the reference's halves are not independent: {check}")));
+        }
         let half = |i: usize| values.iter().map(|v| (v.sum + v.halves[i]).as_vec3()).collect();
         let rays = values.iter().map(|v| v.rays).sum();
         let lights = stage.scene().lights();

@@ -2,11 +2,11 @@
 
 use super::errors::Truth;
 use super::experiment::Runs;
-use super::figure::{CONFIDENCE, Figure, error, tail};
+use super::figure::{self, CONFIDENCE, Figure, error, tail};
 use super::plan::Pilot;
 use super::spread::{Parts, Spread};
 use crate::base::error::Result;
-use crate::base::interval::Bounds;
+use crate::base::interval::{Bounds, Tail};
 use crate::base::statistics::{Moments, normal_quantile};
 use crate::record::{Claim, Counts, Interval, Point, Row, Summary};
 use crate::render::counts as render;
@@ -69,15 +69,22 @@ impl Jackknife {
         without.map_or(self.all, |run| self.without[run])
     }
 
-    /// Squared bias as far as a claim lets it count: 0 of what claims to have none, never negative, NaN where it is not
-    /// known.
-    pub fn counted_bias2(&self, claim: &Claim, without: Option<usize>) -> f64 {
+    /// Squared bias as far as a claim lets it count: 0 of what claims to have none, never negative; not a number where it
+    /// is not known.
+    pub fn counted_bias2(&self, claim: &Claim) -> Figure {
         if !claim.may_be_biased() {
-            return 0.0;
+            return Figure::certain(0.0);
         }
-        let bias2 = self.parts(without).bias2;
         // `max` would turn NaN, a bias not known, into 0.
-        if bias2.is_nan() { bias2 } else { bias2.max(0.0) }
+        if self.all.bias2.is_nan() { Figure::certain(f64::NAN) } else { self.bias2().above_zero() }
+    }
+
+    fn bias2(&self) -> Figure {
+        Figure::signed_jackknife(self.without.len(), |run| self.parts(run).bias2)
+    }
+
+    fn variance(&self, tail: Tail) -> Figure {
+        Figure::jackknife(self.without.len(), tail, |run| self.parts(run).variance)
     }
 }
 
@@ -109,26 +116,19 @@ pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32
         Moments::of(values(|r| r.energy_ratio)).detectable(1.0 - CONFIDENCE).hypot(2.8 * truth.own_energy_error());
     let k = runs.images.len();
     if k == last.len() && k > 2 {
-        summary.rel_bias2 = Figure::signed_jackknife(k, |run| jackknife.parts(run).bias2).interval();
-        let cpu_s = |without: Option<usize>| {
-            let kept = last.iter().enumerate().filter(|(run, _)| Some(*run) != without);
-            kept.map(|(_, row)| row.cpu_s).sum::<f64>() / (k - usize::from(without.is_some())) as f64
-        };
-        let v = |without| jackknife.parts(without).variance * cpu_s(without);
-        summary.variance_seconds = if v(None) > 0.0 {
-            Figure::jackknife(k, tail.times(summary.cpu_s.mean), v).interval()
-        } else {
-            Interval::certain(v(None))
-        };
+        let cpu_s = || figure::mean(&last, |r| r.cpu_s);
+        let v = || Figure::of(vec![jackknife.variance(tail), cpu_s()], |parts| parts[0] * parts[1]);
+        summary.rel_bias2 = jackknife.bias2().interval();
+        let varies = jackknife.all.variance > 0.0;
+        summary.variance_seconds = if varies { v().interval() } else { Interval::certain(0.0) };
         if summary.claim.may_be_biased() {
             // A b^2 that may be 0 gives a t* that may be anything.
-            let seen = summary.rel_bias2.low > 0.0 && v(None) > 0.0;
-            let balance = |without| v(without) / jackknife.parts(without).bias2;
-            summary.balance_s = Some(if seen {
-                Figure::jackknife(k, tail.times(summary.cpu_s.mean / jackknife.all.bias2), balance).interval()
-            } else {
-                Interval { mean: f64::INFINITY, low: summary.cpu_s.mean, high: f64::INFINITY }
-            });
+            let balance = (varies && summary.rel_bias2.low > 0.0).then(|| v().over(jackknife.bias2())).flatten();
+            summary.balance_s =
+                Some(balance.map_or(
+                    Interval { mean: f64::INFINITY, low: summary.cpu_s.mean, high: f64::INFINITY },
+                    |balance| balance.interval(),
+                ));
         }
     }
     summary.unstable = unstable(&last);

@@ -10,7 +10,7 @@ use super::table::{cells, claim, column, interval, measured, plot, remark, unbia
 use super::trial::{Budgets, Tried};
 use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
-use crate::measure::figure::Figure;
+use crate::measure::figure::{Figure, error};
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
 use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
@@ -282,15 +282,14 @@ impl Tried {
     fn error_passes(&self) -> Option<Figure> {
         let s = &self.summary;
         let passes = f64::from(s.passes);
-        let values = || self.at(s.passes).iter().map(|row| row.rel_mse * passes).collect();
-        (measured(s) && unbiased(s)).then(|| Figure::mean(values()))
+        let figure = || Figure::of(vec![error(&self.at(s.passes))], move |parts| parts[0] * passes);
+        (measured(s) && unbiased(s)).then(figure)
     }
 
     /// relMSE x CPU seconds of sampling the frame.
     fn error_cpu_s(&self) -> Option<Figure> {
         let s = &self.summary;
-        let figure =
-            || self.of_means(s.passes, [|row| row.rel_mse, |row| row.cpu_s], |[error, seconds]| error * seconds);
+        let figure = || self.error_times(s.passes, |row| row.cpu_s);
         (measured(s) && unbiased(s) && self.is_timed()).then(figure)
     }
 
@@ -299,7 +298,11 @@ impl Tried {
     fn ratio(&self, to: Option<&Self>, figure: fn(&Self) -> Option<Figure>) -> Option<Interval> {
         let to = to.filter(|to| to.summary.passes == self.summary.passes)?;
         let (own, other) = (figure(self)?, figure(to)?);
-        if std::ptr::eq(self, to) { Some(Interval::certain(1.0)) } else { own.over(&other) }
+        if std::ptr::eq(self, to) {
+            Some(Interval::certain(1.0))
+        } else {
+            own.over(other).map(|ratio| ratio.interval())
+        }
     }
 }
 

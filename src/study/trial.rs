@@ -6,11 +6,10 @@
 //! An oracle is never timed, and looks at each receiver alone: it is run where errors are taken, or at some of these.
 
 use crate::base::error::Result;
-use crate::base::interval::Tail;
 use crate::measure::engine::Engine;
 use crate::measure::errors::Truth;
 use crate::measure::experiment::{Experiment, Nowhere, Runs};
-use crate::measure::figure::{Figure, tail};
+use crate::measure::figure::{Figure, error, mean};
 use crate::measure::observer::Observer;
 use crate::measure::plan::{Budget, Pilot, RECEIVERS};
 use crate::measure::summary;
@@ -127,10 +126,10 @@ fn is_oracle(strategy: &Configured) -> bool {
 }
 
 impl Tried {
-    /// A figure made of the means of relMSE and another value over the runs at a number of passes.
-    pub(super) fn of_means(&self, passes: u32, values: [fn(&Row) -> f64; 2], of: impl Fn([f64; 2]) -> f64) -> Figure {
+    /// The mean relMSE times the mean of another value of the runs at a number of passes.
+    pub(super) fn error_times(&self, passes: u32, value: fn(&Row) -> f64) -> Figure {
         let rows = self.at(passes);
-        of_means(values.map(|value| rows.iter().map(|row| value(row)).collect()), tail(&rows), of)
+        Figure::of(vec![error(&rows), mean(&rows, value)], |parts| parts[0] * parts[1])
     }
 
     /// Its runs at a number of passes; empty where there are none.
@@ -148,25 +147,4 @@ impl Tried {
     pub(super) fn is_timed(&self) -> bool {
         self.summary.runs > 0 && self.summary.claim != Claim::Oracle
     }
-}
-
-/// The mean over runs of a value.
-pub(super) fn mean(rows: &[&Row], value: fn(&Row) -> f64) -> Figure {
-    Figure::mean(rows.iter().map(|row| value(row)).collect())
-}
-
-/// A positive figure made of the means of several values over the same runs; `tail` is that of the first.
-pub(super) fn of_means<const N: usize>(values: [Vec<f64>; N], tail: Tail, of: impl Fn([f64; N]) -> f64) -> Figure {
-    let mean = |values: &Vec<f64>, without: Option<usize>| {
-        let kept = values.iter().enumerate().filter(|(run, _)| Some(*run) != without);
-        kept.map(|(_, value)| value).sum::<f64>() / (values.len() - usize::from(without.is_some())) as f64
-    };
-    let figure = |without| of(std::array::from_fn(|i| mean(&values[i], without)));
-    let runs = values.iter().map(Vec::len).min().unwrap_or(0);
-    let means: [f64; N] = std::array::from_fn(|i| mean(&values[i], None));
-    let step = 1e-4 * means[0];
-    let mut raised = means;
-    raised[0] += step;
-    let slope = (of(raised) - of(means)) / step;
-    Figure::jackknife(runs, if slope.is_finite() { tail.times(slope) } else { Tail::NONE }, figure)
 }

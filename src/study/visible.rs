@@ -8,10 +8,10 @@
 
 use super::cutoff::sizes;
 use super::table::{cells, column, interval, measured, plot, remark};
-use super::trial::{Budgets, Tried, mean};
+use super::trial::{Budgets, Tried};
 use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
-use crate::measure::figure::{Figure, error};
+use crate::measure::figure::{Figure, error, mean};
 use crate::measure::plan::budgets;
 use crate::measure::reference::Reference;
 use crate::measure::target::Target;
@@ -234,10 +234,9 @@ fn figures_at(tried: &Tried, passes: u32) -> Vec<Cell> {
         return vec![Cell::Missing; figures().len()];
     }
     let timed = |figure: Figure| tried.is_timed().then(|| figure.interval());
-    let outliers =
-        tried.of_means(passes, [|row| row.rel_mse, |row| row.rel_mse_trimmed], |[all, trimmed]| all / trimmed);
+    let outliers = error(&rows).over(mean(&rows, |row| row.rel_mse_trimmed));
     let mut row = cells(error(&rows).interval()).to_vec();
-    row.extend(cells(outliers.interval()));
+    row.extend(cells(outliers.map(|ratio| ratio.interval())));
     row.extend(cells(timed(mean(&rows, Row::total_cpu_s))));
     row.extend(cells(timed(tried.product(passes))));
     row.push(rows.iter().map(|row| row.heap_bytes).max().into());
@@ -247,7 +246,7 @@ fn figures_at(tried: &Tried, passes: u32) -> Vec<Cell> {
 impl Tried {
     /// relMSE x CPU seconds, set-up included.
     fn product(&self, passes: u32) -> Figure {
-        self.of_means(passes, [|row| row.rel_mse, Row::total_cpu_s], |[error, seconds]| error * seconds)
+        self.error_times(passes, Row::total_cpu_s)
     }
 
     /// Why it has no figures at a number of passes; missing where it has.
@@ -265,7 +264,7 @@ impl Tried {
         if std::ptr::eq(self, other) {
             return Some(Interval::certain(1.0));
         }
-        self.product(passes).over(&other.product(passes))
+        self.product(passes).over(other.product(passes)).map(|ratio| ratio.interval())
     }
 }
 

@@ -3,7 +3,6 @@
 //! Every contender looks at each receiver alone, so that receivers from all over a frame stand for it.
 
 use super::super::Session;
-use super::super::trial::of_means;
 use crate::base::error::{Error, Result};
 use crate::base::interval::Tail;
 use crate::base::random::RunKey;
@@ -54,7 +53,7 @@ impl Measured {
         if std::ptr::eq(self, other) {
             return Some(Interval::certain(1.0));
         }
-        self.mse_figure().over(&other.mse_figure())
+        self.mse_figure().over(other.mse_figure()).map(|ratio| ratio.interval())
     }
 
     fn mse_figure(&self) -> Figure {
@@ -75,8 +74,9 @@ impl Measured {
 
     /// relMSE x CPU seconds at a receiver.
     pub(super) fn cost_s(&self) -> Interval {
-        let (errors, seconds) = self.runs.iter().map(|(errors, seconds)| (errors.rel_mse, *seconds)).unzip();
-        of_means([errors, seconds], Self::tail(&self.runs), |[error, seconds]| error * seconds).interval()
+        let seconds = Figure::mean(self.runs.iter().map(|(_, seconds)| *seconds).collect());
+        let parts = vec![Self::error(&self.runs, |errors| errors.rel_mse), seconds];
+        Figure::of(parts, |parts| parts[0] * parts[1]).interval()
     }
 }
 
