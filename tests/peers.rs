@@ -148,6 +148,7 @@ fn images_of_peers_become_rows_marked_external() {
         assert_eq!(summary.claim, Claim::External { renderer: "Fake 1.0".into() });
         assert_eq!((summary.runs, summary.passes), (2, 4));
         assert_eq!((summary.setup_cpu_s.mean, summary.cpu_s.mean), (0.5, 0.04));
+        assert!(!summary.setup_cpu_s.is_bounded(), "measured once, not once a run");
         let points: Vec<(u32, f64)> = summary.curve.iter().map(|point| (point.passes, point.cpu_s.mean)).collect();
         assert_eq!(points, [(1, 0.51), (4, 0.54)], "from nothing to the image");
         assert_eq!(summary.seconds_to[0].value.mean, 0.51, "read as a strategy's curve is");

@@ -347,7 +347,7 @@ fn an_interval_without_an_upper_end_is_a_bound_and_explained() {
     assert_eq!(explained(&run), 1, "under the one table that has the mark");
     of(&mut run, "power").variance_seconds = Interval { mean: 3.1, low: f64::NEG_INFINITY, high: f64::INFINITY };
     assert_eq!(cells(&run, &rows, "power")[V], "3.10 ±?");
-    assert!(report::table(&run, &run.scenes[0], &rows).contains(" ±?: too few runs"));
+    assert!(report::table(&run, &run.scenes[0], &rows).contains(" ±?: the runs give no interval."));
 }
 
 #[test]
@@ -526,6 +526,9 @@ fn another_renderer_stands_apart_and_leaves_the_others_as_they_are() {
     let line = table.lines().find(|line| line.trim_start().starts_with("cycles")).expect("a row");
     assert!(line.contains("external") && line.contains(" – "), "{line}");
     assert!(table.contains("`cycles`: Cycles in Blender 5."), "{table}");
+    let cost = table.split("\nCost\n").nth(1).expect("a table of cost");
+    let line = cost.lines().find(|line| line.trim_start().starts_with("cycles")).expect("a row");
+    assert!(line.ends_with(" –"), "nobody knows its memory: {line}");
     let work = table.split("\nWork\n").nth(1).expect("a table of work").split("\nWork of choosing").next();
     assert!(!work.expect("text").contains("cycles"), "nobody counted its work");
     assert!(table.contains("holds for all 3 unbiased rows"), "it is not held to be unbiased");

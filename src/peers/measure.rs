@@ -21,7 +21,7 @@ use crate::measure::observer::Observer;
 use crate::measure::summary::summarise;
 use crate::measure::target::Target;
 use crate::record::store::RowWriter;
-use crate::record::{Claim, Kind, ResultFolder, Row, Summary};
+use crate::record::{Claim, Interval, Kind, ResultFolder, Row, Summary};
 use crate::visibility::stage::Stage;
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -319,6 +319,8 @@ impl<'a> Session<'a> {
         rows.sort_by_key(|row| (row.passes, row.run));
         let runs = Runs { rows, images: self.images.values().cloned().collect() };
         let (mut summary, jackknife) = summarise(self.blank(), &self.ground.truth, &runs, spp);
+        // Measured once, not once a run.
+        summary.setup_cpu_s = Interval { mean: summary.setup_cpu_s.mean, low: f64::NEG_INFINITY, high: f64::INFINITY };
         // Read as the strategies are, at the same errors and times; but it says nothing of its bias, so it has no rank.
         Entry { summary: &mut summary, curve: Curve::of(&runs, spp), jackknife }.read_at(times_s);
         summary

@@ -46,8 +46,8 @@ pub(super) struct Estimate {
 /// What stands behind a bound where the runs cannot tell the interval's other end.
 pub(super) const HEAVY: &str = "†";
 
-/// What stands for the interval of what was run too seldom to have one.
-pub(super) const TOO_FEW: &str = "±?";
+/// What stands for an interval that the runs do not give: they are too few, or some of them say "never".
+pub(super) const UNKNOWN: &str = "±?";
 
 impl From<String> for Estimate {
     fn from(text: String) -> Self {
@@ -124,7 +124,7 @@ impl Estimate {
         } else if high.is_finite() && low == f64::NEG_INFINITY {
             bound(format!("<{}", digits(two_digits(high, f64::ceil), 2)))
         } else {
-            Some(Self { figure: text(mean), interval: TOO_FEW.to_owned() })
+            Some(Self { figure: text(mean), interval: UNKNOWN.to_owned() })
         }
     }
 

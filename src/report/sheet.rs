@@ -1,6 +1,6 @@
 //! A table before it is known where it will be shown: on a terminal or in Markdown.
 
-use super::number::{Estimate, HEAVY, TOO_FEW};
+use super::number::{Estimate, HEAVY, UNKNOWN};
 use super::order::{self, measured};
 use crate::record::Summary;
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
@@ -90,7 +90,7 @@ impl Sheet {
     pub(super) fn explained(mut self) -> Self {
         let marks = [
             (HEAVY, "too heavy a tail to say: a few pixels decide the mean, the runs cannot bound it from there on"),
-            (TOO_FEW, "too few runs for an interval"),
+            (UNKNOWN, "the runs give no interval"),
         ];
         for (mark, meaning) in marks {
             let is_marked = |entry: &Entry| matches!(entry, Entry::Figure(estimate) if estimate.interval == mark);

@@ -54,7 +54,7 @@ fn cost(summaries: &[&Summary]) -> Sheet {
         Column::new("passes", |s| s.passes.to_string()),
         Column::new("CPU s\nof those", |s| Estimate::of(s.curve.last().map_or(Interval::NONE, |point| point.cpu_s))),
         Column::new("wall s\nof sampling", |s| short(s.wall_s)),
-        Column::new("memory", |s| bytes(s.heap_bytes)),
+        Column::new("memory", |s| if s.claim.is_external() { NONE.to_owned() } else { bytes(s.heap_bytes) }),
     ];
     let below = vec![
         "An image of n passes takes set-up + arrival + n x a pass, in CPU time of one thread.".to_owned(),
