@@ -68,6 +68,16 @@ impl Figure {
         Self { estimate, values, law }
     }
 
+    /// The figure in another unit, `factor` of which, above 0, make one of this.
+    pub fn times(self, factor: f64) -> Self {
+        let law = match self.law {
+            Law::Positive(tail) => Law::Positive(tail.times(factor)),
+            Law::Signed => Law::Signed,
+        };
+        let values = self.values.into_iter().map(|value| value * factor).collect();
+        Self { estimate: self.estimate * factor, values, law }
+    }
+
     /// Where it lies at a confidence within (0, 1).
     pub fn bounds(&self, confidence: f64) -> Bounds {
         match &self.law {

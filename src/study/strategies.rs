@@ -10,7 +10,7 @@ use super::table::{cells, claim, column, interval, measured, plot, remark, unbia
 use super::trial::{Budgets, Tried};
 use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
-use crate::measure::figure::Figure;
+use crate::measure::figure::{Figure, error};
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
 use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
@@ -282,8 +282,7 @@ impl Tried {
     fn error_passes(&self) -> Option<Figure> {
         let s = &self.summary;
         let passes = f64::from(s.passes);
-        let values = || self.at(s.passes).iter().map(|row| row.rel_mse * passes).collect();
-        (measured(s) && unbiased(s)).then(|| Figure::mean(values()))
+        (measured(s) && unbiased(s)).then(|| error(&self.at(s.passes)).times(passes))
     }
 
     /// relMSE x CPU seconds of sampling the frame.
