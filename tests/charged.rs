@@ -236,16 +236,17 @@ fn setups(scene: &str, rounds: usize) -> f64 {
                 times.push(caller(&target, &truth, &strategy)[0]);
             }
         }
-        let medians: Vec<f64> = times.into_iter().map(median).collect();
-        let ratios: Vec<f64> = medians[1..].iter().map(|caller| caller / medians[0]).collect();
+        // What else a machine does only adds.
+        let least: Vec<f64> = times.into_iter().map(|times| times.into_iter().fold(f64::INFINITY, f64::min)).collect();
+        let ratios: Vec<f64> = least[1..].iter().map(|caller| caller / least[0]).collect();
         println!(
             "{:<22}{:>9.4}{}",
             strategy.name(),
-            1e3 * medians[0],
+            1e3 * least[0],
             ratios.iter().map(|r| format!("{r:>8.3}")).collect::<String>()
         );
         // Below a tenth of a millisecond it is the clock and the allocator that are timed.
-        if medians[0] > 1e-4 {
+        if least[0] > 1e-4 {
             worst = ratios.iter().fold(worst, |worst, ratio| worst.max(*ratio).max(1.0 / ratio));
         }
     }
@@ -258,7 +259,7 @@ fn setups(scene: &str, rounds: usize) -> f64 {
 fn every_caller_finds_the_same_set_up() {
     let _alone = ALONE.lock();
     for scene in ["downtown", "metropolis"] {
-        let worst = setups(scene, 5);
+        let worst = setups(scene, 9);
         assert!(worst <= 1.15, "{scene}: a caller is {worst:.3} off the others");
     }
 }

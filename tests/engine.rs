@@ -1,8 +1,11 @@
 //! One engine times everything, plans do not follow the machine, and whatever a unit starts is on its clock.
 #![cfg(feature = "measure")]
 
+#[path = "common/alone.rs"]
+mod alone;
 mod common;
 
+use alone::Alone;
 use citylights::base::random::RunKey;
 use citylights::measure::clock::{Clock, Cpu, Spent};
 use citylights::measure::compare::{Compared, Options, compare};
@@ -108,8 +111,8 @@ fn a_slower_machine_gives_the_same_rows_in_the_same_order() {
 #[test]
 fn every_machine_runs_the_same_budgets() {
     let budgets = |rows: &[Row]| rows.iter().map(timeless).collect::<Vec<_>>();
-    let (_, one) = compared(&Cpu::new(), 3, 1);
-    let (_, two) = compared(&Cpu::new(), 3, 2);
+    let (_, one) = compared(&Alone::new(), 3, 1);
+    let (_, two) = compared(&Alone::new(), 3, 2);
     assert_eq!(budgets(&one), budgets(&two));
     let passes: Vec<u32> =
         one.iter().filter(|row| row.strategy == "uniform" && row.run == 0).map(|r| r.passes).collect();

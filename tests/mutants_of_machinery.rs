@@ -3,6 +3,8 @@
 
 #![cfg(feature = "measure")]
 
+#[path = "common/alone.rs"]
+mod alone;
 mod common;
 
 use citylights::base::colour::luminance;
@@ -364,7 +366,6 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
-    use citylights::measure::clock::Cpu;
     use citylights::measure::compare::{Compared, Options, compare};
     use citylights::measure::engine::Engine;
     use citylights::measure::films::Films;
@@ -377,7 +378,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let budget = Budget::up_to(4, 1.0);
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &Films::of(folder, "mutants");
-    let engine = &Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
+    let engine = &Engine { clock: &alone::Alone::new(), workers: 1, seed: 1 };
     let options = Options {
         typed: "sixteen.toml",
         strategies: &strategies,

@@ -2,11 +2,13 @@
 
 #![cfg(feature = "measure")]
 
+#[path = "common/alone.rs"]
+mod alone;
 mod common;
 #[path = "common/runs.rs"]
 mod runs;
 
-use citylights::measure::clock::Cpu;
+use alone::Alone;
 use citylights::measure::compare::{Compared, Options as Comparison, compare};
 use citylights::measure::engine::Engine;
 use citylights::measure::films::Films;
@@ -70,7 +72,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let folder = tempfile::tempdir().expect("a folder");
     let strategies = parse_list("all,power,oracle,intensity,restir").expect("a list");
     let films = Films::of(folder.path(), "oracle");
-    let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
+    let engine = Engine { clock: &Alone::new(), workers: 2, seed: 1 };
     let options = Comparison {
         typed: "made.toml",
         strategies: &strategies,

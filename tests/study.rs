@@ -275,14 +275,14 @@ fn ran(name: &str, options: &Options, folder: &Path) -> Study {
         assert!(!rows.is_empty(), "table `{}` is empty", table.name);
     }
 
-    // A number in the last row of the first table, made another one.
+    // A count in the last row of the first table, made another one.
     let table = &study.record.tables[0];
     let file = out.join(format!("{}.csv", table.name));
     let text = fs::read_to_string(&file).expect("read");
-    let at = table.columns.iter().position(|c| c.format == Format::Number).expect("a number");
+    let at = table.columns.iter().position(|c| c.format == Format::Whole).expect("a count");
     let last = text.trim_end().rfind('\n').expect("lines") + 1;
     let mut fields: Vec<&str> = text[last..].trim_end().split(',').collect();
-    fields[at] = "123.456";
+    fields[at] = "123456";
     fs::write(&file, format!("{}{}\n", &text[..last], fields.join(","))).expect("written");
     let drifts = report::check(&out).expect("checked");
     assert!(

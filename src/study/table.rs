@@ -33,10 +33,10 @@ pub(super) fn plot(name: &str, title: &str, series: &str, x: (&str, &str), y: (&
     }
 }
 
-/// The three cells of an interval; missing where there is none.
+/// The three cells of an interval; missing what is not known.
 pub(super) fn cells(interval: impl Into<Option<Interval>>) -> [Cell; 3] {
     match interval.into() {
-        Some(Interval { mean, low, high }) => [mean, low, high].map(Cell::from),
+        Some(Interval { mean, low, high }) => [mean, low, high].map(|value| (!value.is_nan()).then_some(value).into()),
         None => [Cell::Missing, Cell::Missing, Cell::Missing],
     }
 }

@@ -1,0 +1,28 @@
+//! A clock for comparisons that tests run beside one another.
+
+#![allow(dead_code, unreachable_pub, reason = "each test file uses a part of this module")]
+
+use citylights::measure::clock::{Clock, Cpu};
+
+/// The machine's clocks, but for a process in which nothing else runs: other tests do.
+pub struct Alone(Cpu);
+
+impl Alone {
+    pub fn new() -> Self {
+        Self(Cpu::new())
+    }
+}
+
+impl Clock for Alone {
+    fn thread_s(&self) -> f64 {
+        self.0.thread_s()
+    }
+
+    fn process_s(&self) -> f64 {
+        self.0.thread_s()
+    }
+
+    fn wall_s(&self) -> f64 {
+        self.0.wall_s()
+    }
+}
