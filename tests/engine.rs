@@ -116,7 +116,8 @@ fn every_machine_runs_the_same_budgets() {
     assert_eq!(budgets(&one), budgets(&two));
     let passes: Vec<u32> =
         one.iter().filter(|row| row.strategy == "uniform" && row.run == 0).map(|r| r.passes).collect();
-    assert_eq!(passes, [1, 4, 16]);
+    // Four times what is usual: with fewer a bias of 5 % could go unseen.
+    assert_eq!(passes, [1, 4, 16, 64]);
 }
 
 #[test]

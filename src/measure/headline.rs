@@ -89,7 +89,7 @@ fn ranked_by(entries: &[Entry<'_>]) -> usize {
     (0..ERRORS.len()).rev().find(|&by| reached(by)).unwrap_or(0)
 }
 
-/// Three times, a factor of about 3 apart, up to what the middle one of the strategies that choose took in all.
+/// Three times, a factor of about 3 apart, about what the middle one of the strategies that choose took in all.
 fn times(entries: &[Entry<'_>]) -> Vec<f64> {
     let chosen = entries.iter().filter(|entry| entry.summary.chooses);
     let mut longest: Vec<f64> =
@@ -99,5 +99,5 @@ fn times(entries: &[Entry<'_>]) -> Vec<f64> {
     // 1, 3, 10, 30 and so on.
     let step = (2.0 * middle.log10()).floor() as i32;
     let round = |step: i32| 10f64.powi(step.div_euclid(2)) * [1.0, 3.0][step.rem_euclid(2) as usize];
-    (step - 2..=step).map(round).collect()
+    (step - 1..=step + 1).map(round).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::order::measured;
 use crate::record::study::Study;
-use crate::record::{Row, RunRecord, Summary};
+use crate::record::{Point, Row, RunRecord, Summary};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// What is wrong with the rows, by what the record says: those that stand more than once, those that are missing, and
@@ -57,7 +57,21 @@ fn missing(summary: &Summary, rows: &[&Row]) -> Vec<String> {
         let beyond = found.range(summary.runs..);
         faults.extend(beyond.map(|run| format!("{passes} passes: run {run} where there are {}", summary.runs)));
     }
+    if faults.is_empty() {
+        faults.extend(summary.curve.iter().filter_map(|point| other_mean(point, rows)));
+    }
     faults
+}
+
+/// What the rows of a budget come to where that is not what the record says of it.
+fn other_mean(point: &Point, rows: &[&Row]) -> Option<String> {
+    let of: Vec<&&Row> = rows.iter().filter(|row| row.passes == point.passes).collect();
+    let mean = |value: fn(&Row) -> f64| of.iter().map(|row| value(row)).sum::<f64>() / of.len() as f64;
+    let differs = |found: f64, recorded: f64| (found - recorded).abs() > 1e-9 * recorded.abs();
+    let figures =
+        [("relMSE", mean(|r| r.rel_mse), point.rel_mse.mean), ("CPU s", mean(Row::total_cpu_s), point.cpu_s.mean)];
+    let (what, found, recorded) = figures.into_iter().find(|&(_, found, recorded)| differs(found, recorded))?;
+    Some(format!("{} passes: the mean {what} is {found:e} where the record says {recorded:e}", point.passes))
 }
 
 /// Rows of a study that stand more than once, and the table that they stand in.
