@@ -59,7 +59,7 @@ pub(super) struct Arguments {
     /// The result folder; a new one under results/ by default. An interrupted comparison there is resumed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Most work of a scene's reference, in nominal CPU seconds: 230 ns a shadow ray and 20 ns a light and receiver,
+    /// Most work of a scene's reference, in nominal CPU seconds: 170 ns a shadow ray and 20 ns a light and receiver,
     /// whatever the machine takes. Where that is not enough, errors are taken at fewer receivers, 256 at least
     #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
     reference_work: f64,

@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     /// Refine triangle lights until the image's own relMSE is at most this; other lights are exact
     #[arg(long, value_name = "RELMSE", default_value = "1e-5", value_parser = noise)]
     noise: f64,
-    /// Most work, in nominal CPU seconds: 230 ns a shadow ray and 20 ns a light and receiver, whatever the machine
+    /// Most work, in nominal CPU seconds: 170 ns a shadow ray and 20 ns a light and receiver, whatever the machine
     /// takes. Where that is not enough for every pixel, the image is less exact than asked for
     #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
     reference_work: f64,

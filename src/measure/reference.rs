@@ -59,10 +59,12 @@ impl Wanted {
     }
 }
 
-/// Nominal CPU seconds of a shadow ray to a point of a light, all around it included.
-pub const RAY_S: f64 = 230e-9;
+/// Nominal CPU seconds of a shadow ray to a point of a light, all around it included: 170 ns were seen on first-night (2
+/// cores of a busy AMD EPYC), 100 ns in a street of 34 lights.
+pub const RAY_S: f64 = 170e-9;
 
-/// Nominal CPU seconds of coming past a light at a receiver, whether or not it can add anything.
+/// Nominal CPU seconds of coming past a light at a receiver, whether or not it is sampled: 13 to 30 ns were seen on
+/// stadium and downtown.
 pub const LIGHT_S: f64 = 20e-9;
 
 /// Work of a reference where nobody says otherwise, in nominal CPU seconds: a minute of two cores.
