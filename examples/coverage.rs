@@ -139,7 +139,9 @@ impl Everything {
             self.figures(truth, strategy, last, &chosen[..runs], noise)
         };
         let found: Vec<[Interval; 4]> = (0..REDRAWS).into_par_iter().map(redraw).collect();
-        std::array::from_fn(|i| Tally::of(right[i].mean, found.iter().map(|figures| figures[i])))
+        std::array::from_fn(|i| {
+            Tally::of(right[i].mean, &found.iter().map(|figures| figures[i]).collect::<Vec<Interval>>())
+        })
     }
 }
 
@@ -153,14 +155,14 @@ struct Tally {
 }
 
 impl Tally {
-    fn of(truth: f64, found: impl Iterator<Item = Interval> + Clone) -> Self {
+    fn of(truth: f64, found: &[Interval]) -> Self {
         let percent = |of: fn(&Interval, f64) -> bool| {
-            100.0 * found.clone().filter(|interval| of(interval, truth)).count() as f64 / REDRAWS as f64
+            100.0 * found.iter().filter(|interval| of(interval, truth)).count() as f64 / REDRAWS as f64
         };
-        let mut reaches: Vec<f64> = found.clone().map(|interval| interval.high / interval.mean).collect();
+        let mut reaches: Vec<f64> = found.iter().map(|interval| interval.high / interval.mean).collect();
         reaches.sort_by(f64::total_cmp);
         Self {
-            held: percent(|interval, truth| interval.holds(truth)),
+            held: percent(Interval::holds),
             above: percent(|interval, truth| truth > interval.high),
             below: percent(|interval, truth| truth < interval.low),
             open: percent(|interval, _| interval.high.is_infinite()),

@@ -171,7 +171,7 @@ const STRAY: f64 = 0.1;
 fn notes(target: &Target<'_>, reference: &Reference, wanted: Wanted, stray: f64) -> Vec<String> {
     let stage = target.stage;
     let mut notes = stage.scene().notes().to_vec();
-    notes.extend(reference.notes(&target, wanted));
+    notes.extend(reference.notes(target, wanted));
     if !stage.needs().occlusion {
         notes.push("nothing can stand between a surface and a light: no shadow rays".into());
     }

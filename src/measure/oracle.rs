@@ -86,7 +86,7 @@ pub(super) fn settle(
         }
         let Some(rung) = rungs.iter().rposition(|&rung| rung <= summary.passes) else { continue };
         let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
-        let own = figure(runs.images.iter().map(at).collect());
+        let own = figure(&runs.images.iter().map(at).collect::<Vec<Errors>>());
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
         // An exact oracle has no multiple, and an error below the reference's own noise none that means anything.
         summary.times_oracle = own.over(floor.figure(rung)).map(|ratio| ratio.interval().times(samples));
@@ -107,12 +107,12 @@ struct Floor {
 impl Floor {
     /// relMSE after a number of passes.
     fn figure(&self, rung: usize) -> Figure {
-        figure(self.runs.iter().map(|errors| errors[rung]).collect())
+        figure(&self.runs.iter().map(|errors| errors[rung]).collect::<Vec<Errors>>())
     }
 }
 
 /// The mean relMSE of runs with these errors.
-fn figure(errors: Vec<Errors>) -> Figure {
+fn figure(errors: &[Errors]) -> Figure {
     let values: Vec<f64> = errors.iter().map(|errors| errors.rel_mse).collect();
     let largest: Vec<_> = errors.iter().map(|errors| errors.largest).collect();
     let tail = Tail::of(&values, &largest);
