@@ -15,7 +15,7 @@
 //! | `importance` | is no triangle left out that can add anything? | `means` |
 //! | `exact-sum` | is the exact image the sum over all lights? | `sums` |
 //!
-//! Shadow rays are traced through every triangle, so their number is bounded: see [`TESTS`].
+//! Shadow rays are traced through every triangle, so their number is bounded (`TESTS`).
 
 mod geometry;
 mod light;
