@@ -75,8 +75,8 @@ impl Figure {
                 below = below.hypot(if unknown { f64::INFINITY } else { down });
                 above = above.hypot(if unknown { f64::INFINITY } else { up });
             }
-            let high = estimate * above.exp();
-            Bounds { low: estimate * (-below).exp(), high: if high > FAR.sqrt() { f64::INFINITY } else { high } }
+            let end = |by: f64| if by > FAR.ln() / 2.0 { f64::INFINITY } else { by };
+            Bounds { low: estimate * (-end(below)).exp(), high: estimate * end(above).exp() }
         };
         Self { estimate, bounds: Box::new(bounds) }
     }

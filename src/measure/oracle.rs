@@ -88,8 +88,11 @@ pub(super) fn settle(
         let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
         let own = figure(&runs.images.iter().map(at).collect::<Vec<Errors>>());
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
-        // An exact oracle has no multiple, and an error below the reference's own noise none that means anything.
-        summary.times_oracle = own.over(floor.figure(rung)).map(|ratio| ratio.interval().times(samples));
+        // An exact oracle has no multiple, an error below the reference's own noise none that means anything, and one whose
+        // own tail is too heavy to say none that could be told.
+        let floor = floor.figure(rung);
+        let told = floor.interval().is_bounded();
+        summary.times_oracle = own.over(floor).filter(|_| told).map(|ratio| ratio.interval().times(samples));
     }
     Ok(())
 }
