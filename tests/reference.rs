@@ -102,7 +102,7 @@ fn a_bound_is_kept_by_measuring_fewer_receivers_as_exactly() {
     let (all, unbounded) = bounded(free);
     assert!(!all.is_subset() && unbounded.notes(&all, free).is_empty());
     assert!(unbounded.truth.own_rel_mse() <= 1e-6);
-    let tight = Wanted { work_s: 0.6 * unbounded.work_s, ..free };
+    let tight = Wanted { work_s: 0.8 * unbounded.work_s, ..free };
     let (some, reference) = bounded(tight);
     let count = some.places.len();
     assert!((FEWEST..whole.places.len()).contains(&count), "{count} receivers");

@@ -124,6 +124,12 @@ impl Reference {
                     (step, earlier) = (Step { halvings, ..finer }, Some(reference));
                     continue;
                 }
+                // Fewer of them are, where all are too noisy.
+                let fewer = (left / (each * step.dearer(finer))) as usize;
+                if !enough && reference.truth.own_rel_mse() > wanted.own_rel_mse && fewer >= fewest {
+                    (measured, step, earlier) = (target.thinned(fewer.min(count)), finer, Some(reference));
+                    continue;
+                }
             }
             let affordable = ((left / each) as usize).clamp(fewest, every);
             if affordable <= count || missing > 1.0 && fewest <= count {
@@ -250,6 +256,11 @@ impl Step {
         }
         let halvings = (missing.log2() * (FALL + 1.0) / FALL).ceil();
         Self { halvings: (self.halvings + (halvings as u32).clamp(1, STRIDE)).min(FINEST), ..self }
+    }
+
+    /// How many times as much work a receiver takes at another step, at most.
+    fn dearer(self, finer: Self) -> f64 {
+        (f64::from(finer.halvings.saturating_sub(self.halvings)) / (FALL + 1.0)).exp2()
     }
 
     /// The most halvings, if a receiver may take so many times as much work as it did: rays grow as the price to the
