@@ -601,6 +601,10 @@ fn doubled_missing_and_unnamed_rows_are_found_and_named() {
         faults(|_, rows| rows.retain(|row| !row.strategy.starts_with("power") || row.passes < 256)),
         ["village, `power`, 256 passes: runs 0 to 3 are missing"]
     );
+    let edited = faults(|_, rows| {
+        rows.iter_mut().filter(|row| power(row) && row.run == 2).for_each(|row| row.rel_mse *= 0.5);
+    });
+    assert!(edited[0].contains("`power`, 64 passes: the mean relMSE is"), "{edited:?}");
     let more = |rows: &mut Vec<Row>| {
         let row = rows.iter().find(|row| power(row)).cloned().expect("a row");
         rows.extend([Row { run: 9, ..row.clone() }, Row { strategy: "nobody".into(), ..row }]);

@@ -27,6 +27,9 @@ pub(super) fn faults(run: &RunRecord, rows: &[Row]) -> Vec<String> {
             faults.extend(missing(summary, own).into_iter().map(|what| format!("{}, `{}`, {what}", of.0, of.1)));
         }
     }
+    if faults.is_empty() {
+        faults = other_means(run, &by_strategy);
+    }
     // Of a scene that is not finished there is no summary yet.
     let stray: BTreeSet<_> = by_strategy.keys().filter(|of| run.finished && !named.contains(*of)).collect();
     faults.extend(stray.into_iter().map(|(scene, strategy)| format!("{scene}, `{strategy}`: the record names none")));
@@ -57,8 +60,18 @@ fn missing(summary: &Summary, rows: &[&Row]) -> Vec<String> {
         let beyond = found.range(summary.runs..);
         faults.extend(beyond.map(|run| format!("{passes} passes: run {run} where there are {}", summary.runs)));
     }
-    if faults.is_empty() {
-        faults.extend(summary.curve.iter().filter_map(|point| other_mean(point, rows)));
+    faults
+}
+
+/// Where the rows, which are all there, come to other means than the record's.
+fn other_means(run: &RunRecord, by_strategy: &HashMap<(&str, &str), Vec<&Row>>) -> Vec<String> {
+    let mut faults = Vec::new();
+    for scene in &run.scenes {
+        for summary in &scene.summaries {
+            let Some(rows) = by_strategy.get(&(scene.name.as_str(), summary.strategy.as_str())) else { continue };
+            let found = summary.curve.iter().filter_map(|point| other_mean(point, rows));
+            faults.extend(found.map(|what| format!("{}, `{}`, {what}", scene.name, summary.strategy)));
+        }
     }
     faults
 }
