@@ -33,6 +33,18 @@ impl Claim {
         matches!(self, Self::Biased { .. }) || self.is_external()
     }
 
+    /// It in a word, as tables show it.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Unbiased => "unbiased",
+            Self::Biased { .. } => "biased",
+            Self::Floor => "floor",
+            Self::Ceiling => "ceiling",
+            Self::Oracle => "oracle",
+            Self::External { .. } => "external",
+        }
+    }
+
     /// Whether another renderer makes it.
     pub fn is_external(&self) -> bool {
         matches!(self, Self::External { .. })

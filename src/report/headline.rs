@@ -126,12 +126,5 @@ fn rank(summary: &Summary) -> Estimate {
 }
 
 fn claim(summary: &Summary) -> &'static str {
-    match summary.claim {
-        Claim::Unbiased => "unbiased",
-        Claim::Biased { .. } => "biased",
-        Claim::Floor => "floor",
-        Claim::Ceiling => "ceiling",
-        Claim::Oracle => "oracle",
-        Claim::External { .. } => "external",
-    }
+    summary.claim.word()
 }

@@ -1,8 +1,8 @@
 //! How a study writes down its tables: short words for columns, axes and plots.
 
+use crate::record::Interval;
 use crate::record::Summary;
 use crate::record::study::{AxisRecord, Cell, ColumnRecord, Format, PlotRecord};
-use crate::record::{Claim, Interval};
 
 /// A column `name` of the file under the head `head` of the page.
 pub(super) fn column(name: &str, head: &str, format: Format) -> ColumnRecord {
@@ -43,15 +43,7 @@ pub(super) fn cells(interval: impl Into<Option<Interval>>) -> [Cell; 3] {
 
 /// What a strategy says of itself.
 pub(super) fn claim(summary: &Summary) -> Cell {
-    match summary.claim {
-        Claim::Unbiased => "unbiased",
-        Claim::Biased { .. } => "biased",
-        Claim::Floor => "floor",
-        Claim::Ceiling => "ceiling",
-        Claim::Oracle => "oracle",
-        Claim::External { .. } => "external",
-    }
-    .into()
+    summary.claim.word().into()
 }
 
 /// Why a strategy has no figures; missing where it has.
