@@ -5,6 +5,7 @@
 
 use super::light::Light;
 use super::receiver::Receiver;
+use crate::base::triangle::nearest_squared;
 
 /// How the point on a triangle light is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,15 +42,22 @@ impl LightSampling {
         if self != Self::Auto {
             return self;
         }
+        let corner = light.position - at.position;
+        // No point is nearer than the centroid less the longest edge: most lights are known to be small by that.
+        let to_centre = (corner + (light.a + light.b) / 3.0).length();
+        let reach = light.a.length_squared().max(light.b.length_squared()).max((light.b - light.a).length_squared());
         // `c` is twice the area long.
-        let to_centre = (light.position - at.position) + (light.a + light.b) / 3.0;
-        let d2 = to_centre.length_squared();
-        let large = light.c.length_squared() > 4.0 * LARGE * LARGE * d2 * d2;
+        let near = light.c.length() / (2.0 * LARGE);
+        let surely = (to_centre - reach.sqrt()).max(0.0);
+        let large = surely * surely < near && nearest_squared(corner, light.a, light.b) < near;
         if large { Self::SolidAngle } else { Self::Area }
     }
 }
 
-/// Area over squared distance of its centroid from which on a triangle is not sampled by area.
+/// Area over squared distance of its nearest point from which on a triangle is not sampled by area.
+///
+/// The nearest point, since it is what the density by area misses: a sign that hangs out over a wall has its near end 25 cm
+/// from a point of the wall and its centroid 2 m; a point of it that is drawn at that end counts 40 times the mean.
 ///
 /// Where `study soft-shadows` sees the lower variance begin to pay for the longer time: cost 1.15 at 2, 0.6 at 4, against
 /// area. It takes for granted a relative variance of 1 that choosing a light and visibility leave anyway, and 300 ns for

@@ -13,11 +13,13 @@
 mod angles;
 mod area;
 mod irradiance;
+mod nearest;
 mod projected;
 mod seen;
 mod solid_angle;
 
 pub use area::{CENTROID, low_distortion_point, uniform_point};
+pub use nearest::nearest_squared;
 pub use projected::Projected;
 pub use seen::Seen;
 pub use solid_angle::SolidAngle;
