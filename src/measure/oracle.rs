@@ -4,16 +4,20 @@
 //! receivers, and the error of every other strategy at those same receivers is divided by its own. Both are errors per
 //! sample: relMSE times passes, after as many passes where that is affordable, since spread numbers make it fall.
 //!
-//! Receivers and runs are as many as the counted work allows, until the interval of the oracle's own error is narrow.
+//! What it weighs at a receiver depends on the receiver alone: that is done once for all runs, and there are as many
+//! receivers as the counted work allows. Where a row's runs on the clock say too little of its error there, more are
+//! added here, as far as the work allows, if it too chooses at one receiver alone.
 
 use super::compare::Options;
 use super::errors::{Errors, Truth};
-use super::experiment::Runs;
+use super::experiment::{Runs, numbers};
 use super::figure::Figure;
 use super::observer::Observer;
 use super::plan::PASSES;
 use super::summary::{blank, counts};
 use super::target::{self, Target};
+use super::work::nominal_s;
+use crate::base::draws::{Points, Sequence};
 use crate::base::error::Result;
 use crate::base::interval::Tail;
 use crate::base::random::RunKey;
@@ -23,32 +27,32 @@ use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
+use crate::strategy::erased::{AnySampler, Source};
 use crate::strategy::registry::Configured;
-use crate::strategy::{BuildContext, Role};
+use crate::strategy::tally::Work;
+use crate::strategy::{BuildContext, Pick, Role};
+use crate::visibility::stage::Stage;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-
-/// Most receivers that an oracle is run on.
-const MOST_RECEIVERS: usize = 4_096;
+use std::any::Any;
 
 /// Fewest receivers that say anything of the image.
 const FEWEST_RECEIVERS: usize = 64;
 
-/// Independent runs are done so many at a time.
-const ROUND: u32 = 8;
+/// Independent runs of an oracle.
+const RUNS: u32 = 96;
 
-/// Most rounds.
-const ROUNDS: u32 = 8;
-
-/// Half the interval of its error, as a share of it, that is narrow enough.
+/// Half the interval of a row's error, as a share of it, that needs no more runs.
 const NARROW: f64 = 0.08;
 
 /// Work is counted at so many receivers.
 const COUNTED: usize = 16;
 
-/// Most lights that it weighs on one scene, shadow rays and all: some fifteen CPU seconds.
-const DEAREST: f64 = 6e7;
+/// Most work of an oracle on one scene, in nominal CPU seconds.
+const ORACLE_S: f64 = 12.0;
+
+/// Most work of the runs that are added to a row, in nominal CPU seconds.
+const ROW_S: f64 = 8.0;
 
 /// Whether a strategy is run here and not against the clock.
 pub(super) fn is_oracle(strategy: &Configured) -> bool {
@@ -69,9 +73,9 @@ pub(super) fn settle(
     rungs.retain(|&passes| passes <= options.budget.usual_passes);
     rungs.sort_unstable();
     rungs.dedup();
+    let ground = Ground { target, truth, rungs: &rungs, seed: options.seed };
     let mut floor: Option<Floor> = None;
     for (strategy, summary) in options.strategies.iter().zip(&mut *summaries).filter(|(one, _)| is_oracle(one)) {
-        let ground = Ground { target, truth, rungs: &rungs, seed: options.seed };
         let found;
         (*summary, found) = ground.summary(strategy, watch)?;
         floor = floor.or(found);
@@ -85,9 +89,8 @@ pub(super) fn settle(
             continue;
         }
         let Some(rung) = rungs.iter().rposition(|&rung| rung <= summary.passes) else { continue };
-        let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
-        let own = figure(&runs.images.iter().map(at).collect::<Vec<Errors>>());
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
+        let own = ground.own(strategy, summary.passes, runs, &floor, watch)?;
         // An exact oracle has no multiple, an error below the reference's own noise none that means anything, and one whose
         // own tail is too heavy to say none that could be told.
         let floor = floor.figure(rung);
@@ -101,6 +104,7 @@ pub(super) fn settle(
 struct Floor {
     /// Where it was run, as places among the measured receivers.
     places: Vec<usize>,
+    receivers: Vec<Receiver>,
     /// The truth there.
     truth: Truth,
     /// Errors of each run after each number of passes.
@@ -142,43 +146,32 @@ impl Ground<'_> {
             Ok(sampler) => sampler,
             Err(error) => return Ok((Summary { error: Some(error.to_string()), ..blank }, None)),
         };
+        let Some(source) = sampler.source() else {
+            let skipped = "skipped: an oracle chooses at one receiver, without state of a pass or a view of the frame";
+            return Ok((Summary { skipped: Some(skipped.into()), ..blank }, None));
+        };
         let measured = self.target.measured();
         let work = self.count(&*sampler, &measured);
-        let an_arrival = (work.work.weighed as f64 / COUNTED.min(measured.len()).max(1) as f64).max(1.0);
-        let affordable = (DEAREST / (f64::from(ROUND) * an_arrival)) as usize;
+        let cost = Cost::of_few(source, &measured);
+        let affordable = (ORACLE_S / cost.of(RUNS * passes)) as usize;
         if affordable < FEWEST_RECEIVERS.min(measured.len()) {
-            let all = an_arrival * f64::from(ROUND) * FEWEST_RECEIVERS as f64;
-            let skipped = Some(format!("skipped: it would weigh lights {all:.0e} times, {DEAREST:.0e} at most"));
-            return Ok((Summary { skipped, ..blank }, None));
+            let least = cost.of(RUNS * passes) * FEWEST_RECEIVERS as f64;
+            let skipped = format!("skipped: {FEWEST_RECEIVERS} receivers are {least:.0} s of counted work");
+            return Ok((Summary { skipped: Some(skipped), ..blank }, None));
         }
-        let places: Vec<usize> = target::places(measured.len(), affordable.min(MOST_RECEIVERS)).collect();
+        let places: Vec<usize> = target::places(measured.len(), affordable).collect();
         let receivers: Vec<Receiver> = places.iter().map(|&i| measured[i]).collect();
-        let rounds = (affordable / receivers.len().max(1)).clamp(1, ROUNDS as usize) as u32;
-        watch.begin("oracle", u64::from(rounds * ROUND));
-        let mut floor = Floor { truth: self.truth.only(&places), places, runs: Vec::new() };
-        loop {
-            let first = floor.runs.len() as u32;
-            let more = (first..first + ROUND).into_par_iter().map(|run| {
-                watch.check()?;
-                let errors = self.errors(&*sampler, &receivers, &floor.truth, run);
-                watch.advance(1);
-                Ok(errors)
-            });
-            let more = more.collect::<Result<Vec<_>>>()?;
-            floor.runs.extend(more);
-            let narrow = |rung| {
-                let found = floor.figure(rung).interval();
-                found.half_width() <= NARROW * found.mean.abs()
-            };
-            if (0..self.rungs.len()).all(narrow) || floor.runs.len() as u32 >= rounds * ROUND {
-                break;
-            }
-        }
+        let truth = self.truth.only(&places);
+        let chooser = Chooser { source, points: strategy.points(), receivers: &receivers, rungs: self.rungs };
+        let keys: Vec<RunKey> = (0..RUNS).map(|run| RunKey { seed: self.seed, run }).collect();
+        watch.begin("oracle", receivers.len() as u64);
+        let runs = chooser.errors(self.target.stage, &truth, &keys, watch)?;
         watch.end();
+        let floor = Floor { places, receivers, truth, runs };
         let summary = Summary {
             runs: floor.runs.len() as u32,
             passes,
-            receivers: Some(receivers.len() as u64),
+            receivers: Some(floor.receivers.len() as u64),
             rel_mse: floor.figure(self.rungs.len() - 1).interval(),
             heap_bytes: sampler.heap_bytes() as u64,
             counts: counts(work),
@@ -187,38 +180,178 @@ impl Ground<'_> {
         Ok((summary, Some(floor)))
     }
 
-    /// Work of a few arrivals, over as many passes as every strategy's is counted.
+    /// Work at a few receivers, over as many passes as every strategy's is counted.
     fn count(&self, sampler: &dyn AnySampler, measured: &[Receiver]) -> Counts {
-        let few: Vec<Receiver> = target::places(measured.len(), COUNTED).map(|i| measured[i]).collect();
+        let few = target::spread(measured, COUNTED);
         let key = RunKey { seed: !self.seed, run: 0 };
         Plan { stage: self.target.stage, receivers: &few, sampler, key }.run_counting(PASSES, &mut Film::new(few.len()))
     }
 
-    /// Errors of a run after each number of passes. Each receiver is arrived at once, and its passes shaded one by one.
-    fn errors(&self, sampler: &dyn AnySampler, receivers: &[Receiver], truth: &Truth, run: u32) -> Vec<Errors> {
-        let stage = self.target.stage;
-        let key = RunKey { seed: self.seed, run };
-        let most = self.rungs.last().copied().unwrap_or(0);
-        let mut images = vec![vec![Vec3::ZERO; receivers.len()]; self.rungs.len()];
-        let mut sums = vec![DVec3::ZERO; receivers.len()];
-        let (mut picks, mut rays) = (PickBuffer::default(), 0);
-        for block in blocks(sampler, 0..most) {
-            let begun = sampler.begin(Frame::new(receivers, key), block.clone());
-            let mut worker = begun.worker(false);
-            for (i, at) in receivers.iter().enumerate() {
-                worker.fill(std::slice::from_ref(at), block.clone(), true, &mut picks);
-                for (pass, call) in (block.start + 1..).zip(picks.calls()) {
-                    for pick in call {
-                        let light = &stage.scene().lights()[pick.light as usize];
-                        sums[i] += shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut rays)
-                            * f64::from(pick.weight);
-                    }
-                    if let Some(rung) = self.rungs.iter().position(|&rung| rung == pass) {
-                        images[rung][i] = (sums[i] / f64::from(pass)).as_vec3();
-                    }
+    /// The error of a row at the receivers of the floor: of its runs on the clock, and of more.
+    fn own(
+        &self,
+        strategy: &Configured,
+        passes: u32,
+        timed: &Runs,
+        floor: &Floor,
+        watch: &dyn Observer,
+    ) -> Result<Figure> {
+        let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
+        let mut errors: Vec<Errors> = timed.images.iter().map(at).collect();
+        let sampler = strategy.build(BuildContext { stage: self.target.stage, seed: self.seed })?;
+        let Some(source) = sampler.source() else { return Ok(figure(&errors)) };
+        let (points, receivers, rungs) = (strategy.points(), &floor.receivers[..], &[passes]);
+        let chooser = Chooser { source, points, receivers, rungs };
+        let added = Cost::of_few(source, receivers).runs(ROW_S / receivers.len() as f64, passes);
+        let most = errors.len() as u32 + added;
+        // Where a few pixels decide the mean, more runs tell no more.
+        let too_wide = |found: Interval| found.is_bounded() && found.half_width() > NARROW * found.mean;
+        while too_wide(figure(&errors).interval()) && (errors.len() as u32) < most {
+            let done = errors.len() as u32;
+            watch.begin("more runs beside the oracle", receivers.len() as u64);
+            let keys: Vec<RunKey> = (done..most.min(2 * done)).map(|run| numbers(self.seed, run, passes)).collect();
+            errors.extend(chooser.errors(self.target.stage, &floor.truth, &keys, watch)?.into_iter().flatten());
+            watch.end();
+        }
+        Ok(figure(&errors))
+    }
+}
+
+/// Nominal seconds at one receiver.
+struct Cost {
+    arrival_s: f64,
+    pass_s: f64,
+}
+
+impl Cost {
+    /// As counted at a few of these receivers.
+    fn of_few(source: &dyn Source, receivers: &[Receiver]) -> Self {
+        let few = target::spread(receivers, COUNTED);
+        let (mut arrivals, mut passes) = (Work::default(), Work::default());
+        let (mut scratch, mut picks) = (source.scratch(), Vec::new());
+        for at in &few {
+            source.arrive(at, &mut *scratch, Some(&mut arrivals));
+            let sequence = Sequence::new(RunKey { seed: 0, run: 0 }, at.pixel, Points::Random);
+            for pass in 0..PASSES {
+                source.sample(at, &mut sequence.pass(pass), &mut *scratch, Some(&mut passes), &mut picks);
+            }
+        }
+        let (samples, picks) = (few.len() as u64 * u64::from(PASSES), picks.len() as u64);
+        let arrivals = Counts { work: arrivals, ..Counts::default() };
+        let passes = Counts { samples, picks, shadow_rays: picks, work: passes, ..Counts::default() };
+        let share = |counts: &Counts, of: u64| nominal_s(counts) / of.max(1) as f64;
+        Self { arrival_s: share(&arrivals, few.len() as u64), pass_s: share(&passes, samples) }
+    }
+
+    /// Of one arrival and so many passes.
+    fn of(&self, passes: u32) -> f64 {
+        self.arrival_s + f64::from(passes) * self.pass_s
+    }
+
+    /// How many runs of so many passes one arrival leaves time for.
+    fn runs(&self, seconds: f64, passes: u32) -> u32 {
+        ((seconds - self.arrival_s) / (f64::from(passes) * self.pass_s)).max(0.0) as u32
+    }
+}
+
+/// What chooses lights at one receiver after the other, and where.
+#[derive(Clone, Copy)]
+struct Chooser<'a> {
+    source: &'a dyn Source,
+    points: Points,
+    receivers: &'a [Receiver],
+    /// Numbers of passes, ascending.
+    rungs: &'a [u32],
+}
+
+impl Chooser<'_> {
+    /// Errors of the runs that `keys` name, after each number of passes.
+    ///
+    /// Each receiver is arrived at once, for all runs: what is done there depends on the receiver alone. So the images
+    /// are those that each run would make by itself.
+    fn errors(&self, stage: &Stage, truth: &Truth, keys: &[RunKey], watch: &dyn Observer) -> Result<Vec<Vec<Errors>>> {
+        let images = self.images(stage, keys, watch)?;
+        let each = |of: &[Vec<Vec3>]| of.iter().map(|image| truth.errors(image)).collect();
+        Ok(images.par_chunks(self.rungs.len()).map(each).collect())
+    }
+
+    /// The images of each run in turn, one for each number of passes.
+    fn images(&self, stage: &Stage, keys: &[RunKey], watch: &dyn Observer) -> Result<Vec<Vec<Vec3>>> {
+        let visit = |(scratch, picks): &mut (Box<dyn Any + Send>, Vec<Pick>), at: &Receiver| {
+            watch.check()?;
+            self.source.arrive(at, &mut **scratch, None);
+            let values: Vec<Vec3> =
+                keys.iter().flat_map(|&key| self.run(stage, at, key, &mut **scratch, picks)).collect();
+            watch.advance(1);
+            Ok(values)
+        };
+        let own = || (self.source.scratch(), Vec::new());
+        let found = self.receivers.par_iter().map_init(own, visit).collect::<Result<Vec<Vec<Vec3>>>>()?;
+        let image = |i: usize| found.iter().map(|values| values[i]).collect();
+        Ok((0..keys.len() * self.rungs.len()).map(image).collect())
+    }
+
+    /// What a run comes to after each number of passes at the receiver that was arrived at.
+    fn run(
+        &self,
+        stage: &Stage,
+        at: &Receiver,
+        key: RunKey,
+        scratch: &mut dyn Any,
+        picks: &mut Vec<Pick>,
+    ) -> Vec<Vec3> {
+        let sequence = Sequence::new(key, at.pixel, self.points);
+        let (mut sum, mut done, mut rays) = (DVec3::ZERO, 0, 0);
+        let mut after = |&rung: &u32| {
+            for pass in done..rung {
+                let mut draws = sequence.pass(pass);
+                picks.clear();
+                self.source.sample(at, &mut draws, scratch, None, picks);
+                for (slot, pick) in (0..).zip(&mut *picks) {
+                    pick.settle(slot, &mut draws);
+                    let light = &stage.scene().lights()[pick.light as usize];
+                    sum +=
+                        shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut rays) * f64::from(pick.weight);
+                }
+            }
+            done = rung;
+            (sum / f64::from(rung)).as_vec3()
+        };
+        self.rungs.iter().map(&mut after).collect()
+    }
+}
+
+#[cfg(all(test, feature = "recipe"))]
+mod tests {
+    use super::*;
+    use crate::measure::observer::Unobserved;
+    use crate::scene::file::{self, Overrides};
+    use crate::strategy::registry::parse;
+    use crate::visibility::offset::Offset;
+    use crate::visibility::stage::LeaveOut;
+    use std::path::Path;
+
+    #[test]
+    fn runs_after_one_arrival_are_those_that_each_makes_by_itself() {
+        let small = Overrides { resolution: Some((64, 36)), ..Overrides::default() };
+        let scene = file::open(Path::new("scenes/first-night.toml"), &small).expect("a scene");
+        let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+        let receivers = target::spread(stage.receivers(), 50);
+        let keys = [0, 1, 5].map(|run| RunKey { seed: 3, run });
+        for name in ["oracle", "oracle:points=sobol", "oracle:points=random", "visible", "resampled"] {
+            let strategy = parse(name).expect(name);
+            let sampler = strategy.build(BuildContext { stage: &stage, seed: 3 }).expect(name);
+            let source = sampler.source().expect(name);
+            let chooser = Chooser { source, points: strategy.points(), receivers: &receivers, rungs: &[1, 4, 6] };
+            let images = chooser.images(&stage, &keys, &Unobserved).expect(name);
+            for (key, images) in keys.into_iter().zip(images.chunks(3)) {
+                for (&passes, image) in chooser.rungs.iter().zip(images) {
+                    let mut film = Film::new(receivers.len());
+                    let plan = Plan { stage: &stage, receivers: &receivers, sampler: &*sampler, key };
+                    plan.run(passes, &mut film);
+                    assert!(film.image() == *image, "{name}, run {} after {passes} passes", key.run);
                 }
             }
         }
-        images.iter().map(|image| truth.errors(image)).collect()
     }
 }

@@ -307,11 +307,7 @@ impl<L: LightSampler, T: Tally> Worker for Typed<'_, L, T> {
                 let mut picks = Picks::new(&mut out.picks, &mut self.tally);
                 sampler.sample(at, &mut draws, &mut self.scratch, &mut picks);
                 if extended {
-                    for (slot, pick) in (0..).zip(&mut out.picks[first..]) {
-                        if pick.uv == Pick::DRAW {
-                            pick.uv = draws.point(slot);
-                        }
-                    }
+                    (0..).zip(&mut out.picks[first..]).for_each(|(slot, pick)| pick.settle(slot, &mut draws));
                 }
                 out.ends.push(out.picks.len() as u32);
             }

@@ -63,6 +63,14 @@ pub struct Pick {
 impl Pick {
     /// The harness draws the point.
     const DRAW: [f32; 2] = [-1.0, -1.0];
+
+    /// Draws the point if that was left to the harness. `slot` is the place of the pick in its call.
+    #[inline]
+    pub(crate) fn settle(&mut self, slot: u32, draws: &mut Draws) {
+        if self.uv == Self::DRAW {
+            self.uv = draws.point(slot);
+        }
+    }
 }
 
 /// Where a sampler puts its picks and says what they took.

@@ -1,9 +1,9 @@
 //! The best choice of one light: by what each adds here with its shadow ray already cast.
 //!
 //! Exhaustive, and so never timed: the floor under the error of every strategy that picks a light and leaves the point
-//! on it to chance. A triangle is weighed by the root mean square over a few points, the probability of least variance
-//! (Rath et al., ACM TOG 39(4), 2020). Its points may all be hidden while it is not: `mix` of the picks goes to
-//! triangles by what they would add with nothing in between.
+//! on it to chance. A triangle is weighed by the root mean square over points on it, the probability of least variance
+//! (Rath et al., ACM TOG 39(4), 2020): the more points, the more it would add with nothing in between. They may all be
+//! hidden while it is not: `mix` of the picks goes to triangles by what they would add with nothing in between.
 //!
 //! Strategies that choose points by visibility too, or reuse their neighbours', may lie below it.
 
@@ -19,11 +19,11 @@ use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 
-/// Points along each side of a triangle's grid.
-const GRID: u32 = 4;
+/// Points on a triangle on average, of those that face a receiver: shared out by what each would add.
+const POINTS: f64 = 9.0;
 
-/// Points that stand for a triangle.
-pub const POINTS: u32 = GRID * GRID;
+/// Fewest points along each side of a triangle's grid.
+const LEAST_SIDE: u32 = 2;
 
 /// One light, with a probability in proportion to what it adds, shadows included.
 pub struct Oracle {
@@ -71,21 +71,27 @@ impl Sampler {
     /// Weighs every light: a function of the receiver alone.
     fn weigh<T: Tally>(&self, at: &Receiver, weighed: &mut Weighed, tally: &mut T) {
         let Weighed { seen, open, sums } = weighed;
-        seen.clear();
+        let pick = |light| Pick { light, weight: 1.0, uv: [0.0; 2] };
+        let extended = |light: LightId| self.target.scene().lights()[light as usize].kind() == Kind::Triangle;
+        let total = |values: &[f32]| values.iter().map(|&v| f64::from(v)).sum::<f64>();
         open.clear();
         for &light in &self.lights {
-            let extended = self.target.scene().lights()[light as usize].kind() == Kind::Triangle;
-            let pick = Pick { light, weight: 1.0, uv: [0.0; 2] };
-            let whole = if extended { self.target.of_light(&pick, at, tally) } else { 0.0 };
-            open.push(whole);
-            seen.push(match (extended, whole > 0.0) {
-                (false, _) => self.target.of_visible_point(&pick, at, tally),
-                (true, false) => 0.0,
-                (true, true) => self.of_grid(light, at, tally),
+            open.push(if extended(light) { self.target.of_light(&pick(light), at, tally) } else { 0.0 });
+        }
+        let all_open = total(open);
+        let points = POINTS * open.iter().filter(|&&whole| whole > 0.0).count() as f64;
+        seen.clear();
+        for (&light, &whole) in self.lights.iter().zip(open.iter()) {
+            seen.push(if !extended(light) {
+                self.target.of_visible_point(&pick(light), at, tally)
+            } else if whole > 0.0 {
+                let side = (points * f64::from(whole) / all_open).sqrt() as u32;
+                self.of_grid(light, side.max(LEAST_SIDE), at, tally)
+            } else {
+                0.0
             });
         }
-        let total = |values: &[f32]| values.iter().map(|&v| f64::from(v)).sum::<f64>();
-        let (all_seen, all_open) = (total(seen), total(open));
+        let all_seen = total(seen);
         let mix = if all_open > 0.0 { f64::from(self.mix) } else { 0.0 };
         let share = |mix: f64, total: f64| if total > 0.0 { mix / total } else { 0.0 };
         let (by_seen, by_open) = (share(1.0 - mix, all_seen), share(mix, all_open));
@@ -96,17 +102,17 @@ impl Sampler {
     }
 
     /// Root mean square over a jittered grid of points on a triangle, shadows included.
-    fn of_grid<T: Tally>(&self, light: LightId, at: &Receiver, tally: &mut T) -> f32 {
-        let step = 1.0 / GRID as f32;
+    fn of_grid<T: Tally>(&self, light: LightId, side: u32, at: &Receiver, tally: &mut T) -> f32 {
+        let step = 1.0 / side as f32;
         let words = [u64::from_le_bytes(*b"oracle's"), u64::from(at.pixel), u64::from(light)];
         let mut stream = Stream::keyed(&words);
-        let squares = (0..POINTS).map(|cell| {
+        let squares = (0..side * side).map(|cell| {
             let [u, v] = stream.uniform2();
-            let uv = [((cell % GRID) as f32 + u) * step, ((cell / GRID) as f32 + v) * step];
+            let uv = [((cell % side) as f32 + u) * step, ((cell / side) as f32 + v) * step];
             let uv = uv.map(|x| x.min(1.0 - f32::EPSILON));
             f64::from(self.target.of_visible_point(&Pick { light, weight: 1.0, uv }, at, tally)).powi(2)
         });
-        (squares.sum::<f64>() / f64::from(POINTS)).sqrt() as f32
+        (squares.sum::<f64>() / f64::from(side * side)).sqrt() as f32
     }
 }
 
