@@ -75,7 +75,7 @@ impl Figure {
                 below = below.hypot(if unknown { f64::INFINITY } else { down });
                 above = above.hypot(if unknown { f64::INFINITY } else { up });
             }
-            let end = |by: f64| if by > FAR.ln() / 2.0 { f64::INFINITY } else { by };
+            let end = |by: f64| if by > UNKNOWN.ln() { f64::INFINITY } else { by };
             Bounds { low: estimate * (-end(below)).exp(), high: estimate * end(above).exp() }
         };
         Self { estimate, bounds: Box::new(bounds) }
@@ -109,7 +109,10 @@ impl Figure {
 }
 
 /// What stands for a part without end.
-const FAR: f64 = 1e100;
+const FAR: f64 = 1e200;
+
+/// A figure that may be so many times as large is without end: it follows a part that is, by some power of it.
+const UNKNOWN: f64 = 1e6;
 
 /// What each run adds to a figure, about the figure: their mean is the figure (Quenouille 1956, without its correction).
 fn pseudo_values(runs: usize, of: impl Fn(Option<usize>) -> f64) -> Vec<f64> {
@@ -158,6 +161,7 @@ mod tests {
     fn a_part_without_an_end_leaves_the_figure_without_one_only_where_it_follows() {
         let open = || of(0.9, 1.0, f64::INFINITY);
         assert_eq!(Figure::of(vec![open()], |p| 3.0 * p[0]).interval().high, f64::INFINITY);
+        assert_eq!(Figure::of(vec![open()], |p| p[0].powf(0.1)).interval().high, f64::INFINITY);
         let capped = Figure::of(vec![open()], |p| p[0].min(1.5)).interval();
         assert!((capped.high - 1.5).abs() < 1e-12 && capped.low == 0.9, "{capped:?}");
     }

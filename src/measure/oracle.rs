@@ -52,7 +52,7 @@ const COUNTED: usize = 16;
 const ORACLE_S: f64 = 12.0;
 
 /// Most work of the runs that are added to a row, in nominal CPU seconds.
-const ROW_S: f64 = 8.0;
+const ROW_S: f64 = 3.0;
 
 /// Whether a strategy is run here and not against the clock.
 pub(super) fn is_oracle(strategy: &Configured) -> bool {

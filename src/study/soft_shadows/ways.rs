@@ -4,7 +4,6 @@ use super::measure::{Contender, PIXELS, measure};
 use super::scene::{HEIGHT, SIZES, one_light};
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::base::triangle::nearest_squared;
 use crate::measure::engine::Meter;
 use crate::measure::reference::Reference;
 use crate::measure::target::{Target, spread};
@@ -23,7 +22,7 @@ use crate::visibility::stage::{LeaveOut, Stage};
 use glam::Vec3;
 use std::hint::black_box;
 
-/// Powers of two of area over squared distance of the nearest point.
+/// Powers of two of area over squared distance.
 const RATIOS: std::ops::RangeInclusive<i32> = -7..=4;
 /// Triangles and receivers of a ratio, and points on each.
 const PAIRS: usize = 600;
@@ -36,7 +35,7 @@ const REST: f64 = 300e-9;
 const WAYS: [LightSampling; 3] = [LightSampling::Area, LightSampling::SolidAngle, LightSampling::Projected];
 
 pub(super) fn table() -> TableRecord {
-    let mut columns = vec![column("ratio", "area /\nnearest²", Format::Number)];
+    let mut columns = vec![column("ratio", "area /\ndistance²", Format::Number)];
     for (name, head) in [("area", "area"), ("solid_angle", "solid\nangle"), ("projected", "projected")] {
         columns.push(column(&format!("{name}_variance"), &format!("variance,\n{head}"), Format::Number));
     }
@@ -68,7 +67,7 @@ pub(super) fn table() -> TableRecord {
                 "ways",
                 "what drawing by angle costs against area",
                 "auto",
-                ("ratio", "area / nearest²"),
+                ("ratio", "area / distance²"),
                 ("projected_cost", "cost, projected"),
             );
             costs.beside = vec![("solid_angle_cost".into(), ", solid angle".into())];
@@ -151,7 +150,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
     Ok(())
 }
 
-/// Variance and time of each way where a triangle's area over the squared distance of its nearest point is `ratio`.
+/// Variance and time of each way where a triangle's area over its squared distance is `ratio`.
 fn at_ratio(ratio: f32, seed: u64, meter: Meter<'_>) -> Vec<Cell> {
     let mut rng = Stream::keyed(&[seed, u64::from(ratio.to_bits()), u64::from_le_bytes(*b"by ratio")]);
     let pairs: Vec<(Light, Receiver)> =
@@ -193,25 +192,11 @@ fn pair(ratio: f32, rng: &mut Stream) -> Option<(Light, Receiver)> {
     let corners = corners.map(|corner| corner / area.sqrt());
     let light = Light::from(Shape::Triangle { corners, radiance: Vec3::ONE });
     let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let towards = inside().normalize();
+    let away = inside().normalize() / ratio.sqrt();
     let normal = inside().normalize();
-    let far = distance(corners, centre, towards, ratio.recip().sqrt());
-    let at =
-        Receiver { position: centre + towards * far, normal, view: normal, albedo: Vec3::ONE, pixel: 0, surface: 0 };
+    let at = Receiver { position: centre + away, normal, view: normal, albedo: Vec3::ONE, pixel: 0, surface: 0 };
     let lit = (0..64).filter(|_| contribution::<0b1111>(LightSampling::Area, &light, rng.uniform2(), &at).is_ok());
     (lit.count() >= 8).then_some((light, at))
-}
-
-/// How far from a point of a triangle one has to go in a direction to be `least` from all of the triangle.
-fn distance([first, second, third]: [Vec3; 3], from: Vec3, towards: Vec3, least: f32) -> f32 {
-    let nearest = |far: f32| nearest_squared(first - (from + towards * far), second - first, third - first).sqrt();
-    // The farther, the farther from its nearest point: a triangle is convex.
-    let (mut below, mut above) = (0.0, least + (second - first).length() + (third - first).length());
-    for _ in 0..40 {
-        let middle = 0.5 * (below + above);
-        *(if nearest(middle) < least { &mut below } else { &mut above }) = middle;
-    }
-    above
 }
 
 /// Variance of one point relative to the squared mean.
