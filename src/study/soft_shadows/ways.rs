@@ -173,8 +173,10 @@ fn at_ratio(ratio: f32, seed: u64, meter: Meter<'_>) -> Vec<Cell> {
     cells.extend(found.map(|(variance, _)| variance.into()));
     cells.extend(found.map(|(_, cpu_s)| cpu_s.into()));
     cells.extend([1, 2].map(|way| (cost(found[way]) / cost(found[0])).into()));
-    let (light, at) = &pairs[0];
-    cells.push(LightSampling::Auto.settled(light, at).name().into());
+    // What it takes for most: it goes by more than the ratio.
+    let by_area = |(light, at): &&(Light, Receiver)| LightSampling::Auto.settled(light, at) == LightSampling::Area;
+    let most = if 2 * pairs.iter().filter(by_area).count() > PAIRS { WAYS[0] } else { WAYS[1] };
+    cells.push(most.name().into());
     cells
 }
 
