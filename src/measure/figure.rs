@@ -111,7 +111,7 @@ impl Figure {
 /// What stands for a part without end.
 const FAR: f64 = 1e200;
 
-/// A figure that may be so many times as large is without end: it follows a part that is, by some power of it.
+/// An end more than so many times from the estimate stands for none: only a part without end takes a figure so far.
 const UNKNOWN: f64 = 1e6;
 
 /// What each run adds to a figure, about the figure: their mean is the figure (Quenouille 1956, without its correction).

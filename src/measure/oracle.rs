@@ -5,12 +5,11 @@
 //! sample: relMSE times passes, after as many passes where that is affordable, since spread numbers make it fall.
 //!
 //! What it weighs at a receiver depends on the receiver alone: that is done once for all runs, and there are as many
-//! receivers as the counted work allows. Where a row's runs on the clock say too little of its error there, more are
-//! added here, as far as the work allows, if it too chooses at one receiver alone.
+//! receivers as the counted work allows.
 
 use super::compare::Options;
 use super::errors::{Errors, Truth};
-use super::experiment::{Runs, numbers};
+use super::experiment::Runs;
 use super::figure::Figure;
 use super::observer::Observer;
 use super::plan::PASSES;
@@ -36,23 +35,20 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::any::Any;
 
+/// Most receivers that an oracle is run on.
+const MOST_RECEIVERS: usize = 16_384;
+
 /// Fewest receivers that say anything of the image.
 const FEWEST_RECEIVERS: usize = 64;
 
 /// Independent runs of an oracle.
 const RUNS: u32 = 96;
 
-/// Half the interval of a row's error, as a share of it, that needs no more runs.
-const NARROW: f64 = 0.08;
-
 /// Work is counted at so many receivers.
 const COUNTED: usize = 16;
 
 /// Most work of an oracle on one scene, in nominal CPU seconds.
 const ORACLE_S: f64 = 12.0;
-
-/// Most work of the runs that are added to a row, in nominal CPU seconds.
-const ROW_S: f64 = 3.0;
 
 /// Whether a strategy is run here and not against the clock.
 pub(super) fn is_oracle(strategy: &Configured) -> bool {
@@ -90,7 +86,8 @@ pub(super) fn settle(
         }
         let Some(rung) = rungs.iter().rposition(|&rung| rung <= summary.passes) else { continue };
         let samples = f64::from(summary.passes) / f64::from(rungs[rung]);
-        let own = ground.own(strategy, summary.passes, runs, &floor, watch)?;
+        let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
+        let own = figure(&runs.images.iter().map(at).collect::<Vec<Errors>>());
         // An exact oracle has no multiple, an error below the reference's own noise none that means anything, and one whose
         // own tail is too heavy to say none that could be told.
         let floor = floor.figure(rung);
@@ -156,10 +153,12 @@ impl Ground<'_> {
         let affordable = (ORACLE_S / cost.of(RUNS * passes)) as usize;
         if affordable < FEWEST_RECEIVERS.min(measured.len()) {
             let least = cost.of(RUNS * passes) * FEWEST_RECEIVERS as f64;
-            let skipped = format!("skipped: {FEWEST_RECEIVERS} receivers are {least:.0} s of counted work");
+            let skipped = format!(
+                "skipped: {FEWEST_RECEIVERS} receivers are {least:.0} s of counted work, {ORACLE_S:.0} s at most"
+            );
             return Ok((Summary { skipped: Some(skipped), ..blank }, None));
         }
-        let places: Vec<usize> = target::places(measured.len(), affordable).collect();
+        let places: Vec<usize> = target::places(measured.len(), affordable.min(MOST_RECEIVERS)).collect();
         let receivers: Vec<Receiver> = places.iter().map(|&i| measured[i]).collect();
         let truth = self.truth.only(&places);
         let chooser = Chooser { source, points: strategy.points(), receivers: &receivers, rungs: self.rungs };
@@ -185,35 +184,6 @@ impl Ground<'_> {
         let few = target::spread(measured, COUNTED);
         let key = RunKey { seed: !self.seed, run: 0 };
         Plan { stage: self.target.stage, receivers: &few, sampler, key }.run_counting(PASSES, &mut Film::new(few.len()))
-    }
-
-    /// The error of a row at the receivers of the floor: of its runs on the clock, and of more.
-    fn own(
-        &self,
-        strategy: &Configured,
-        passes: u32,
-        timed: &Runs,
-        floor: &Floor,
-        watch: &dyn Observer,
-    ) -> Result<Figure> {
-        let at = |image: &Vec<Vec3>| floor.truth.errors(&floor.places.iter().map(|&i| image[i]).collect::<Vec<Vec3>>());
-        let mut errors: Vec<Errors> = timed.images.iter().map(at).collect();
-        let sampler = strategy.build(BuildContext { stage: self.target.stage, seed: self.seed })?;
-        let Some(source) = sampler.source() else { return Ok(figure(&errors)) };
-        let (points, receivers, rungs) = (strategy.points(), &floor.receivers[..], &[passes]);
-        let chooser = Chooser { source, points, receivers, rungs };
-        let added = Cost::of_few(source, receivers).runs(ROW_S / receivers.len() as f64, passes);
-        let most = errors.len() as u32 + added;
-        // Where a few pixels decide the mean, more runs tell no more.
-        let too_wide = |found: Interval| found.is_bounded() && found.half_width() > NARROW * found.mean;
-        while too_wide(figure(&errors).interval()) && (errors.len() as u32) < most {
-            let done = errors.len() as u32;
-            watch.begin("more runs beside the oracle", receivers.len() as u64);
-            let keys: Vec<RunKey> = (done..most.min(2 * done)).map(|run| numbers(self.seed, run, passes)).collect();
-            errors.extend(chooser.errors(self.target.stage, &floor.truth, &keys, watch)?.into_iter().flatten());
-            watch.end();
-        }
-        Ok(figure(&errors))
     }
 }
 
@@ -247,15 +217,9 @@ impl Cost {
     fn of(&self, passes: u32) -> f64 {
         self.arrival_s + f64::from(passes) * self.pass_s
     }
-
-    /// How many runs of so many passes one arrival leaves time for.
-    fn runs(&self, seconds: f64, passes: u32) -> u32 {
-        ((seconds - self.arrival_s) / (f64::from(passes) * self.pass_s)).max(0.0) as u32
-    }
 }
 
 /// What chooses lights at one receiver after the other, and where.
-#[derive(Clone, Copy)]
 struct Chooser<'a> {
     source: &'a dyn Source,
     points: Points,

@@ -69,8 +69,7 @@ fn below(scene: &SceneRecord, summaries: &[&Summary]) -> Vec<String> {
     );
     if let Some(receivers) = summaries.iter().find_map(|s| s.receivers) {
         below.push(format!(
-            "x oracle: error per sample over that of the oracle, at the same {} receivers. The oracle is not timed; a row whose \
-             runs say too little at these receivers has more of them, not timed either.",
+            "x oracle: error per sample over that of the oracle, at the same {} receivers; the oracle is not timed.",
             grouped(receivers)
         ));
     }

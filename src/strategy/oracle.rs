@@ -19,7 +19,7 @@ use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 
-/// Points on a triangle on average, of those that face a receiver: shared out by what each would add.
+/// About so many points on a triangle that faces a receiver, on average: shared out by what each would add.
 const POINTS: f64 = 9.0;
 
 /// Fewest points along each side of a triangle's grid.

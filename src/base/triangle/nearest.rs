@@ -19,7 +19,7 @@ pub fn nearest_squared(corner: Vec3, a: Vec3, b: Vec3) -> f32 {
     let (u, v) = (b.cross(corner).dot(c), corner.cross(a).dot(c));
     let area = c.length_squared();
     if u >= 0.0 && v >= 0.0 && u + v <= area && area > 0.0 {
-        return corner.dot(c).powi(2) / area;
+        return (corner.dot(c) / area.sqrt()).powi(2);
     }
     to_edge(corner, a).min(to_edge(corner, b)).min(to_edge(corner + a, b - a))
 }

@@ -57,7 +57,7 @@ pub(super) fn table() -> TableRecord {
             ),
             format!(
                 "cost: (1 + variance) x ({:.0} ns + CPU ns), over that by area: 1 stands for what choosing a light and visibility leave of \
-                 variance in a city, where it is 1 or more, {:.0} ns for choosing and the shadow ray. Below 1 the way pays.",
+                 variance in a city, where it is 1 or more, {:.0} ns for choosing and the shadow ray. Below 1 the way pays. auto: what it takes for most of them.",
                 1e9 * REST,
                 1e9 * REST
             ),
