@@ -134,3 +134,25 @@ fn auto_shows_no_step_where_it_switches() {
     let [by_angle, by_area] = spreads.map(|spread| (1.0 + spread * spread).sqrt());
     assert!(by_area / by_angle < 1.5, "a sample spreads by {spreads:?}");
 }
+
+#[test]
+fn auto_takes_a_near_end_by_angle() {
+    // A sign 3.2 m long that hangs out over a wall, seen from a point of the wall beside its near end: its centroid is far
+    // enough for its area.
+    let corners = [Vec3::new(0.25, 0.1, 0.0), Vec3::new(3.45, 0.1, 1.1), Vec3::new(0.25, 0.1, 1.1)];
+    let light = Light::from(Shape::Triangle { corners, radiance: Vec3::ONE });
+    // By either side of the plane, one is lit.
+    let places = [Vec3::ZERO, Vec3::new(0.0, 0.2, 0.0)];
+    let lit = places.map(|position| white(position, Vec3::X)).into_iter().find(|at| exact(corners, at) > 0.0);
+    let at = lit.expect("a side that the sign lights");
+    assert_eq!(LightSampling::Auto.settled(&light, &at), LightSampling::SolidAngle);
+    let away = Receiver { position: at.position - Vec3::X * 3.0, ..at };
+    assert_eq!(LightSampling::Auto.settled(&light, &away), LightSampling::Area);
+    let mut rng = Stream::keyed(&[43]);
+    let [by_area, auto] =
+        [LightSampling::Area, LightSampling::Auto].map(|by| estimate(by, &light, &at, 100_000, &mut rng));
+    for (mean, error) in [by_area, auto] {
+        assert!((mean - exact(corners, &at)).abs() <= 4.0 * error, "{mean} +- {error}");
+    }
+    assert!(auto.1 < 0.5 * by_area.1, "by area +- {}, auto +- {}", by_area.1, auto.1);
+}
