@@ -73,7 +73,7 @@ const LARGE: f32 = 2.3;
 /// How many times nearer than its centroid a triangle's nearest point may be where it is sampled by area.
 ///
 /// What a point drawn by area adds goes with the inverse cube of its distance. A sign that hangs out over a wall has its near
-/// end 25 cm from a point of the wall and its centroid 2 m: points at that end count 40 times the mean. Over random triangles
-/// and receivers with that ratio between 3 and 4, between 4 and 6, and above, the variance by area is 4.9, 8.9 and 62, by
-/// solid angle 3.2, 3.4 and 6, and the cost as above 1.1, 0.7 and 0.2.
+/// end 25 cm from a point of the wall and its centroid 2 m: points at that end count 40 times the mean. In a trial outside this
+/// program, over 1,700 random triangles and receivers with that ratio between 3 and 4, between 4 and 6, and above, the variance
+/// by area was 4.9, 8.9 and 62, by solid angle 3.2, 3.4 and 6, and the cost as above 1.1, 0.7 and 0.2.
 const NEAR: f32 = 3.0;
