@@ -36,7 +36,7 @@ pub const LARGEST: usize = 4;
 const HORIZON: f64 = 160_000.0;
 
 /// A tail is too heavy to say if its index is below this, where the parts have no mean, and the usual run has more than
-/// [`CROWDED`] in its [`LARGEST`] parts.
+/// [`CROWDED`] in its [`LARGEST`] parts. The index is estimated: of 16 runs with a true one of 0.8, a fifth seems above.
 const LIGHT: f64 = 1.0;
 
 /// See [`LIGHT`].

@@ -73,7 +73,9 @@ fn below(scene: &SceneRecord, summaries: &[&Summary]) -> Vec<String> {
             grouped(receivers)
         ));
     }
-    below.push("±9 % or -8 +15 %: 95 % intervals over runs, corrected for skewness.".to_owned());
+    below.push(
+        "±9 % or -8 +15 %: 95 % intervals over runs; upper ends hold what rare bright pixels may add, too.".to_owned(),
+    );
     if any(&|s| s.unstable) {
         below.push("unstable: the two halves of the runs differ by more than their intervals.".to_owned());
     }
