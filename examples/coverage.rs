@@ -21,9 +21,8 @@ use citylights::measure::target::Target;
 use citylights::record::{Interval, Row};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
-use citylights::scene::file::{Overrides, open};
-use citylights::strategy::BuildContext;
-use citylights::strategy::registry::{Configured, parse};
+use citylights::sources::{Overrides, open};
+use citylights::strategy::{BuildContext, Configured, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::Vec3;
@@ -64,7 +63,7 @@ fn main() -> Result<()> {
     println!("of each figure: held %, truth above / below the interval %, no upper end %, upper end / figure (median)");
     println!("{:20}{}", "", FIGURES.map(|figure| format!("{figure:>36}")).concat());
     for (name, budgets, rows) in ROWS {
-        let strategy = parse(name)?;
+        let strategy = Registry::standard().parse(name)?;
         let all = Everything::render(&target, &truth, &strategy, budgets, seed)?;
         for &row in rows {
             let found = all.coverage(&truth, &strategy, row, runs, seed);

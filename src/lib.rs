@@ -6,8 +6,8 @@
 //! ```
 //! use citylights::base::random::RunKey;
 //! use citylights::render::{film::Film, passes::Plan};
-//! use citylights::scene::recipe::{self, Overrides};
-//! use citylights::strategy::{BuildContext, registry};
+//! use citylights::sources::{Overrides, recipe};
+//! use citylights::strategy::{BuildContext, Registry};
 //! use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
 //!
 //! let text = r#"
@@ -21,7 +21,7 @@
 //! "#;
 //! let scene = recipe::parse(text, "lamp.toml".as_ref(), &Overrides::default())?;
 //! let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-//! let sampler = registry::parse("power:picks=2")?.build(BuildContext { stage: &stage, seed: 1 })?;
+//! let sampler = Registry::standard().parse("power:picks=2")?.build(BuildContext { stage: &stage, seed: 1 })?;
 //! let key = RunKey { seed: 1, run: 0 };
 //! let mut film = Film::new(stage.receivers().len());
 //! Plan { stage: &stage, receivers: stage.receivers(), sampler: sampler.as_ref(), key }.run(4, &mut film);
@@ -32,8 +32,14 @@
 #![forbid(unsafe_code)]
 
 pub mod base;
+#[cfg(feature = "bench")]
+pub mod bench;
+#[cfg(feature = "cli")]
+pub mod calls;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "measure")]
+pub mod explain;
 #[cfg(feature = "gltf")]
 pub mod export;
 #[cfg(feature = "image")]
@@ -42,6 +48,7 @@ pub mod image;
 pub mod measure;
 #[cfg(feature = "peers")]
 pub mod peers;
+pub mod prelude;
 #[cfg(feature = "measure")]
 pub mod record;
 pub mod render;
@@ -49,11 +56,14 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod shading;
+pub mod sources;
 #[cfg(feature = "measure")]
 pub mod stability;
+pub mod strategies;
 pub mod strategy;
 #[cfg(feature = "study")]
 pub mod study;
+pub mod tree;
 #[cfg(feature = "measure")]
 pub mod verify;
 pub mod visibility;

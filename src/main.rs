@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    citylights::cli::run()
+    citylights::cli::run_with(&citylights::strategy::Registry::standard(), &citylights::program!())
 }

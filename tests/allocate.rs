@@ -5,7 +5,7 @@ mod common;
 
 use citylights::base::random::RunKey;
 use citylights::scene::Parts;
-use citylights::strategy::erased::{Frame, PickBuffer};
+use citylights::strategy::{Frame, PickBuffer};
 use citylights::visibility::stage::Stage;
 use common::{expected, ground, image, panel, point, sampler, stage};
 use glam::Vec3;

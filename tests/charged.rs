@@ -1,15 +1,13 @@
 //! Promise: whatever a strategy starts and waits for is charged to it, and by every caller alike.
 #![cfg(feature = "study")]
 
-#[path = "../benches/common/mod.rs"]
-mod bench;
 mod common;
 
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::RunKey;
 use citylights::measure::clock::Cpu;
-use citylights::measure::engine::{Block, Engine, build_seed};
+use citylights::measure::engine::{Block, Engine, Meter, build_seed, part_s};
 use citylights::measure::errors::Truth;
 use citylights::measure::experiment::{Experiment, Nowhere};
 use citylights::measure::observer::Unobserved;
@@ -18,17 +16,19 @@ use citylights::measure::target::{Target, spread};
 use citylights::record::Row;
 use citylights::scene::light::LightId;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::parameters::Arguments;
-use citylights::strategy::registry::{Configured, Entry, STRATEGIES, parse, parse_from};
-use citylights::strategy::tally::Tally;
-use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use citylights::sources::{Overrides, open};
+use citylights::strategy::{
+    Arguments, BuildContext, Claim, Configured, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
+};
 use citylights::study::trial::{Budgets, Trial};
-use citylights::visibility::stage::Stage;
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{sixteen, stage};
 use cpu_time::ThreadTime;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::hint::black_box;
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -41,6 +41,17 @@ const RECEIVERS: usize = 24;
 /// Keeps a processor busy.
 fn spin(rounds: u64) {
     black_box((0..rounds).fold(1, |x: u64, i| black_box(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i))));
+}
+
+/// Does `work` as the engine does a unit.
+fn alone<T: Send>(work: impl FnOnce(Meter<'_>) -> T + Send) -> T {
+    Engine { clock: &Cpu::new(), workers: 1, seed: 0 }.alone(work).expect("a thread")
+}
+
+/// A shipped scene.
+fn scene_stage(name: &str) -> Stage {
+    let file = Path::new("scenes").join(name).with_extension("toml");
+    Stage::new(open(&file, &Overrides::default()).expect(name), LeaveOut::Yes, Offset::SCALED)
 }
 
 const TOGETHER: u8 = 0;
@@ -116,7 +127,8 @@ impl<const HOW: u8> LightSampler for Uniform<HOW> {
 }
 
 fn busy(name: &str) -> Configured {
-    parse_from(&[Entry::of::<Busy<TOGETHER>>(), Entry::of::<Busy<OWN_THREAD>>()], name).expect("a name of this test")
+    let registry = Registry::empty().with::<Busy<TOGETHER>>().with::<Busy<OWN_THREAD>>();
+    registry.parse(name).expect("a name of this test")
 }
 
 /// What the process's clock sees must be of one test alone.
@@ -152,7 +164,8 @@ fn by_study(target: &Target<'_>, truth: &Truth, strategy: &Configured) -> [f64; 
 
 fn by_bench(target: &Target<'_>, _: &Truth, strategy: &Configured) -> [f64; 2] {
     let block = Block { stage: target.stage, receivers: &target.frame, strategy, key: KEY, passes: 1 };
-    [bench::part_s(block, 1, |done| done.setup.cpu), bench::part_s(block, 1, |done| done.sampling.cpu)]
+    [part_s(block, 1, |done| done.setup.cpu), part_s(block, 1, |done| done.sampling.cpu)]
+        .map(|spent| spent.expect("it serves"))
 }
 
 /// A frame of a few receivers, and its truth.
@@ -174,7 +187,7 @@ fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
     let stage = stage(sixteen());
     let (target, truth) = few(&stage, RECEIVERS);
     let strategy = busy("together");
-    let known = |rounds: u64| bench::alone(|meter| meter.time(|| spin(rounds)).1.cpu);
+    let known = |rounds: u64| alone(|meter| meter.time(|| spin(rounds)).1.cpu);
     let all = ARRIVAL * RECEIVERS as u64;
     // In turns with the known work, so that a machine that changes its pace changes it for both.
     let mut shares = vec![[Vec::new(), Vec::new()]; CALLERS.len()];
@@ -204,7 +217,7 @@ fn work_on_a_thread_of_its_own_is_found() {
     let context = BuildContext { stage: &stage, seed: build_seed(KEY) };
     for (name, wanted) in [("together", 0.0..0.1), ("own-thread", 0.8..1.0)] {
         let strategy = busy(name);
-        let account = bench::alone(|meter| meter.audit(|| strategy.build(context).map(drop)).1);
+        let account = alone(|meter| meter.audit(|| strategy.build(context).map(drop)).1);
         assert!(wanted.contains(&account.stray_share()), "{name}: {account:?}");
     }
 }
@@ -212,7 +225,7 @@ fn work_on_a_thread_of_its_own_is_found() {
 /// Callers on a scene of `scenes/` against a clock around the build in a pool of one thread; lines of a table, and the
 /// greatest ratio of those that take long enough to be told.
 fn setups(scene: &str, rounds: usize) -> f64 {
-    let stage = bench::stage(scene);
+    let stage = scene_stage(scene);
     let (target, truth) = few(&stage, 8);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let direct = |strategy: &Configured| {
@@ -227,8 +240,8 @@ fn setups(scene: &str, rounds: usize) -> f64 {
     };
     let mut worst: f64 = 1.0;
     println!("{scene}: set-up in ms, and over that: {}", CALLERS.map(|(name, _)| name).join(", "));
-    for entry in STRATEGIES {
-        let strategy = parse(entry.info().name).expect("a name of the registry");
+    for info in Registry::standard().infos() {
+        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
         let mut times = vec![Vec::new(); 1 + CALLERS.len()];
         for _ in 0..rounds {
             times[0].push(direct(&strategy));

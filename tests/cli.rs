@@ -318,3 +318,60 @@ fn an_interrupted_comparison_keeps_its_rows_and_goes_on() {
     assert!(keys.len() > kept, "{} rows after {kept}", keys.len());
     assert_eq!(keys.len() % 250, 0, "each run has all its budgets: {}", keys.len());
 }
+
+#[test]
+fn a_crate_for_a_strategy_is_written_once_and_into_an_empty_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str| {
+        let mut command = citylights();
+        command.current_dir(folder.path()).args(["new-strategy", name]);
+        command
+    };
+    write("my-lights").assert().success().stdout(contains("cargo run --release -- compare"));
+    let read = |file: &str| std::fs::read_to_string(folder.path().join("my-lights").join(file)).expect(file);
+    let (strategy, program) = (read("src/lib.rs"), read("src/main.rs"));
+    assert!(strategy.contains("pub struct MyLights") && strategy.contains("name: \"my-lights\""), "{strategy}");
+    assert!(strategy.lines().count() <= 60, "{} lines", strategy.lines().count());
+    assert!(program.contains("my_lights::registry()"), "{program}");
+    let rust = ["build.rs", "src/lib.rs", "src/main.rs", "benches/strategy.rs", "tests/contract.rs"];
+    let lines: usize = rust.iter().map(|file| read(file).lines().count()).sum();
+    assert!(lines <= 90, "{lines} lines");
+    for file in rust.iter().chain(&["Cargo.toml"]) {
+        assert!(!read(file).contains(['{', '}']) || !read(file).contains("{name}"), "{file} was not filled in");
+    }
+    write("my-lights").assert().code(2).stderr(contains("holds something already"));
+    write("power").assert().code(2).stderr(contains("is the name of a strategy that there is"));
+    write("My Lights").assert().code(2).stderr(contains("lower-case letters"));
+    write("x").args(["--library", "."]).assert().code(2).stderr(contains("holds no Cargo.toml"));
+}
+
+#[test]
+fn a_pixel_is_explained_by_its_picks_and_by_what_lights_add() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = recipe(folder.path(), LAMP);
+    let explain = |pixel: &str, strategy: &str| {
+        let mut command = citylights();
+        command.arg("explain").arg(&file).args(["--pixel", pixel, "-s", strategy]);
+        command
+    };
+    let shown = contains("light 0 (point").and(contains("81.70 %")).and(contains("exact luminance"));
+    explain("8,8", "power").assert().success().stdout(shown);
+    explain("8,8", "resampled").assert().success().stdout(contains("expected picks of it in a pass: cannot be told"));
+    explain("999,0", "power").assert().code(2).stderr(contains("outside the"));
+    explain("8", "power").assert().code(2).stderr(contains("10,20"));
+}
+
+#[test]
+fn sweeps_are_expanded_and_named_by_what_was_varied() {
+    refused("verify --strategies power:mix={0..1*2}", &["must rise"]);
+    refused("verify --strategies power:mix={0,1", &["has no `}`"]);
+    let list = ["verify", "--quiet", "--gate", "--strategies", "power:picks={1,2}"];
+    let scene = "scenes/lamps-only.toml";
+    citylights()
+        .args(list)
+        .arg(scene)
+        .args(["--resolution", "16x9"])
+        .assert()
+        .success()
+        .stdout(contains("power:picks=1 ").and(contains("power:picks=2 ")));
+}

@@ -10,8 +10,7 @@ use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::Parts;
-use citylights::strategy::erased::{Frame, PickBuffer};
-use citylights::strategy::registry::STRATEGIES;
+use citylights::strategy::{Frame, PickBuffer, Registry};
 use citylights::verify::allocations;
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -24,11 +23,11 @@ fn configurations() -> impl Iterator<Item = &'static str> {
         "stochastic-cull:draw=receiver",
         "light-tree:split=0.5",
         "light-tree:facing=rms",
-        "light-tree:mix=0.5",
         "light-tree:open=0,arity=2,importance=classic",
         "resampled:from=light-tree,m=4,visibility=on",
     ];
-    STRATEGIES.iter().map(|entry| entry.info().name).chain(others)
+    let all: Vec<&str> = Registry::standard().infos().map(|info| info.name).collect();
+    all.into_iter().chain(others)
 }
 
 #[test]

@@ -12,7 +12,7 @@ use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::shading::importance::importance;
-use citylights::strategy::erased::{Frame, PickBuffer};
+use citylights::strategy::{Frame, PickBuffer};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{ALBEDO, expected, ground, point, receiver, sampler, sixteen, spot, stage_with};

@@ -15,7 +15,7 @@ use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
 use citylights::record::{Row, SceneRecord};
-use citylights::strategy::registry::{parse, parse_list};
+use citylights::strategy::Registry;
 use common::{sixteen, stage};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -59,7 +59,8 @@ impl Clock for Scripted {
 fn compared(clock: &dyn Clock, seed: u64, workers: usize) -> (SceneRecord, Vec<Row>) {
     let stage = stage(sixteen());
     let folder = tempfile::tempdir().expect("a folder");
-    let strategies = parse_list("all,uniform,power,intensity,light-tree,resampled,influence").expect("a list");
+    let strategies =
+        Registry::standard().parse_list("all,uniform,power,intensity,light-tree,resampled,influence").expect("a list");
     let engine = Engine { clock, workers, seed };
     let films = Films::of(folder.path(), "engine");
     let options = Options {
@@ -244,7 +245,7 @@ fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
 fn a_block_pays_for_arrival_once() {
     let stage = stage(sixteen());
     let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
-    let strategy = parse("intensity").expect("a strategy");
+    let strategy = Registry::standard().parse("intensity").expect("a strategy");
     let key = RunKey { seed: 1, run: 0 };
     let image = |passes| {
         let block = Block { stage: &stage, receivers: stage.receivers(), strategy: &strategy, key, passes };

@@ -11,17 +11,16 @@ use citylights::scene::Scene;
 use citylights::scene::light::Kind;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
-use citylights::scene::recipe::{Overrides, load};
 use citylights::shading::contribution::contribution;
-use citylights::strategy::erased::{Frame, PickBuffer};
-use citylights::strategy::registry::{STRATEGIES, parse};
-use citylights::strategy::{BuildContext, Claim, Role};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::load;
+use citylights::strategy::{BuildContext, Claim, Frame, PickBuffer, Registry, Role};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
 
 /// Beside the registry's defaults.
-const VARIANTS: [&str; 11] = [
+const VARIANTS: [&str; 9] = [
     "uniform:picks=4",
     "power:mix=0.2",
     "influence-tail:picks=2,tail=3",
@@ -29,9 +28,7 @@ const VARIANTS: [&str; 11] = [
     "light-tree:arity=2,importance=classic",
     "light-tree:arity=4,picks=3",
     "light-tree:distance=minmax",
-    "light-tree:far=0.03",
     "light-tree:split=0.5",
-    "light-tree:mix=0.2",
     "visible:picks=3",
 ];
 
@@ -73,8 +70,8 @@ fn expected_counts_cover_a_city_and_sum_to_the_picks() {
     assert!(pairs > RECEIVERS * lights / 20, "{pairs} pairs add anything");
     let mut failed = Vec::new();
     let mut told = 0;
-    for name in STRATEGIES.iter().map(|entry| entry.info().name).chain(VARIANTS) {
-        let strategy = parse(name).expect(name);
+    for name in Registry::standard().infos().map(|info| info.name).chain(VARIANTS) {
+        let strategy = Registry::standard().parse(name).expect(name);
         // An oracle leaves out what is in shadow, and may.
         if strategy.info().role == Role::Oracle {
             continue;

@@ -7,9 +7,10 @@ use citylights::base::triangle::Seen;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
 use citylights::scene::receiver::Receiver;
-use citylights::scene::recipe::{Overrides, load};
 use citylights::scene::{Parts, Scene, Surface};
-use citylights::strategy::registry::{STRATEGIES, parse};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::load;
+use citylights::strategy::Registry;
 use citylights::verify::{Options, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -41,8 +42,8 @@ fn scene(name: &str, pixels: u32) -> Scene {
 /// Renders every strategy's image; says which value is neither 0 nor positive and finite.
 fn assert_finite(name: &str, stage: &Stage) {
     assert!(!stage.receivers().is_empty(), "{name}");
-    for entry in STRATEGIES {
-        let strategy = entry.info().name;
+    for info in Registry::standard().infos() {
+        let strategy = info.name;
         for (i, rgb) in image(strategy, stage, 2).into_iter().enumerate() {
             let right = rgb.is_finite() && rgb.min_element() >= 0.0;
             assert!(right, "{name}, {strategy}: {rgb} at {:?}", stage.receivers()[i]);
@@ -79,8 +80,8 @@ fn every_strategy_keeps_its_contract_and_the_exact_mean() {
         let options = Options { receivers: 8, draws: 5_000, ..Options::default() };
         let verifier = Verifier::new(&stage, options);
         assert!(verifier.truths().iter().any(|truth| truth.total() > 0.0), "{name} is black");
-        for entry in STRATEGIES {
-            let strategy = parse(entry.info().name).expect("a name of the registry");
+        for info in Registry::standard().infos() {
+            let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
             let checks = verifier.verify(&strategy).expect("a sampler");
             failed.extend(checks.iter().filter(|c| !c.passed).map(|c| format!("{name}, {}: {c}", strategy.name())));
         }
@@ -204,8 +205,8 @@ fn assert_verified_among_a_million(wanted: impl Fn(&str) -> bool) {
     let verifier = Verifier::new(&A_MILLION, options);
     assert!(verifier.truths().iter().any(|truth| truth.total() > 0.0), "{MILLION} is black");
     let (mut failed, mut tried) = (Vec::new(), 0);
-    for entry in STRATEGIES.iter().filter(|entry| wanted(entry.info().name)) {
-        let strategy = parse(entry.info().name).expect("a name of the registry");
+    for info in Registry::standard().infos().filter(|info| wanted(info.name)) {
+        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
         let checks = verifier.verify(&strategy).expect("a sampler");
         tried += 1;
         failed.extend(checks.iter().filter(|c| !c.passed).map(|c| format!("{}: {c}", strategy.name())));

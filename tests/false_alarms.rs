@@ -5,9 +5,9 @@
 #![cfg(all(feature = "measure", feature = "recipe"))]
 
 use citylights::measure::gate::Gate;
-use citylights::scene::recipe::{Overrides, load};
-use citylights::strategy::Role;
-use citylights::strategy::registry::{STRATEGIES, parse};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::load;
+use citylights::strategy::{Registry, Role};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use cpu_time::ProcessTime;
@@ -25,8 +25,8 @@ fn right_strategies_pass_the_gate_of_a_hundred_comparisons() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let overrides = Overrides { resolution: Some((64, 36)), ..Overrides::default() };
     let stage = Stage::new(load(&file, &overrides).expect("a shipped scene"), LeaveOut::Yes, Offset::SCALED);
-    let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.info().name).collect();
-    let strategies: Vec<_> = names.iter().map(|name| parse(name).expect(name)).collect();
+    let names: Vec<&str> = Registry::standard().infos().map(|info| info.name).collect();
+    let strategies: Vec<_> = names.iter().map(|name| Registry::standard().parse(name).expect(name)).collect();
     let (clock, mut alarms) = (ProcessTime::now(), Vec::new());
     for seed in 1..=COMPARISONS {
         let gate = Gate::new(&stage, "scenes/first-night.toml --resolution 64x36", strategies.len(), seed);

@@ -2,19 +2,12 @@
 
 use citylights::base::colour::luminance;
 use citylights::scene::camera::Camera;
-use citylights::scene::city::beacons::Beacons;
-use citylights::scene::city::buildings::Buildings;
-use citylights::scene::city::bulbs::Bulbs;
-use citylights::scene::city::floodlights::Floodlights;
-use citylights::scene::city::lamps::{LampKind, Lamps};
-use citylights::scene::city::moon::Moon;
-use citylights::scene::city::shops::Shops;
-use citylights::scene::city::signs::Signs;
-use citylights::scene::city::traffic::Traffic;
-use citylights::scene::city::windows::Windows;
-use citylights::scene::city::{City, Grown, generate};
 use citylights::scene::light::Shape;
 use citylights::scene::{Parts, Scene};
+use citylights::sources::city::{
+    Beacons, Buildings, Bulbs, City, Floodlights, Grown, LampKind, Lamps, Moon, Shops, Signs, Traffic, Windows,
+    generate,
+};
 use glam::{DVec3, Vec3};
 use std::hash::{DefaultHasher, Hasher};
 

@@ -3,8 +3,8 @@
 
 mod common;
 
-use citylights::scene::file::{Overrides, open};
-use citylights::scene::gltf::parse;
+use citylights::sources::gltf::parse;
+use citylights::sources::{Overrides, open};
 use common::gltf::glb;
 use common::refused::{check, good, refused};
 use serde_json::json;

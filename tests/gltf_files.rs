@@ -5,8 +5,8 @@ mod common;
 
 use assert_cmd::Command;
 use citylights::scene::Scene;
-use citylights::scene::file::{Overrides, open};
 use citylights::scene::light::Kind;
+use citylights::sources::{Overrides, open};
 use common::gltf::{File, digest};
 use glam::Vec3;
 use predicates::prelude::*;

@@ -6,7 +6,7 @@ mod common;
 mod peak;
 
 use citylights::measure::clock::{Clock, Cpu};
-use citylights::scene::file::{Overrides, open};
+use citylights::sources::{Overrides, open};
 use common::gltf::glb;
 use std::fmt::Write;
 

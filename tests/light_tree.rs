@@ -14,9 +14,8 @@ use citylights::scene::light::{LightId, Shape};
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
-use citylights::strategy::registry;
-use citylights::strategy::tree::Tree;
-use citylights::strategy::tree::importance::How;
+use citylights::strategy::Registry;
+use citylights::tree::{How, Tree};
 use citylights::verify::{Options, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -26,11 +25,10 @@ use common::{
 use glam::Vec3;
 
 /// Every way to weigh and walk that the tree has.
-const WAYS: [&str; 19] = [
+const WAYS: [&str; 15] = [
     "light-tree",
     "light-tree:open=0",
     "light-tree:arity=2,open=0",
-    "light-tree:open=0,mix=0.25",
     "light-tree:arity=2",
     "light-tree:arity=4",
     "light-tree:importance=classic",
@@ -38,12 +36,9 @@ const WAYS: [&str; 19] = [
     "light-tree:distance=minmax",
     "light-tree:facing=rms",
     "light-tree:importance=classic,distance=minmax",
-    "light-tree:far=0.05",
-    "light-tree:far=1",
     "light-tree:split=0.5",
     "light-tree:split=0.95,cut=64",
-    "light-tree:mix=0.25,picks=3",
-    "light-tree:mix=0.25,split=0.9",
+    "light-tree:picks=3",
     "stochastic-lightcuts",
     "stochastic-lightcuts:cut=2",
 ];
@@ -162,7 +157,7 @@ fn the_probabilities_are_those_of_one_pick_or_less() {
 fn a_receiver_in_the_open_loses_no_pick() {
     let lights: Vec<Shape> = (0..500).map(|i| point(Vec3::new((i % 25) as f32, (i / 25) as f32, 5.0), 3.0)).collect();
     let stage = everything(lights);
-    for way in ["light-tree", "light-tree:arity=2", "light-tree:distance=minmax", "light-tree:far=1"] {
+    for way in ["light-tree", "light-tree:arity=2", "light-tree:distance=minmax"] {
         let sum: f32 = expected(way, &stage, &receiver(Vec3::new(3.0, 4.0, 0.0), Vec3::Z)).iter().sum();
         assert!((sum - 1.0).abs() < 1e-5, "{way}: {sum}");
     }
@@ -284,9 +279,7 @@ fn the_unit_of_length_does_not_matter() {
     for scale in [0.01, 100.0] {
         let scaled: Vec<Shape> = lights.iter().map(|light| scaled(light, scale)).collect();
         let other = stage_with(ground(150.0 * scale, scaled), LeaveOut::No, Offset::SCALED);
-        for way in
-            ["light-tree", "light-tree:arity=2,importance=classic", "light-tree:far=0.05", "light-tree:split=0.5"]
-        {
+        for way in ["light-tree", "light-tree:arity=2,importance=classic", "light-tree:split=0.5"] {
             let (mut apart, mut pairs) = (0, 0);
             for at in &receivers {
                 let there = Receiver { position: at.position * scale, ..*at };
@@ -345,7 +338,7 @@ fn every_way_keeps_the_contract() {
     let stage = stage(sixteen());
     let verifier = Verifier::new(&stage, Options { receivers: 12, draws: 4_000, ..Options::default() });
     for way in WAYS {
-        for check in verifier.verify(&registry::parse(way).expect(way)).expect(way) {
+        for check in verifier.verify(&Registry::standard().parse(way).expect(way)).expect(way) {
             assert!(check.passed, "{way}: {check}");
         }
     }
@@ -409,7 +402,7 @@ fn what_is_doubly_dark_costs_lightcuts_nothing() {
     let at = [receiver(Vec3::new(0.0, 0.0, 2.0), Vec3::Y)];
     let sampler = sampler("lightcuts:error=0", &stage);
     let plan = Plan { stage: &stage, receivers: &at, sampler: &*sampler, key: RunKey { seed: 1, run: 0 } };
-    let nodes = plan.run_counting(1, &mut Film::new(1)).work.nodes;
+    let nodes = plan.run_counting(1, &mut Film::new(1)).nodes;
     // The way to the lamp, and nothing beside it, of 600 nodes.
     assert!(nodes < 40, "{nodes} nodes were opened: clusters that add nothing were refined");
 }

@@ -6,9 +6,9 @@ mod common;
 
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
-use citylights::scene::{Parts, Scene, small};
-use citylights::strategy::Claim;
-use citylights::strategy::registry::{self, STRATEGIES};
+use citylights::scene::{Parts, Scene};
+use citylights::sources::small;
+use citylights::strategy::{Claim, Registry};
 use citylights::verify::metamorphic::{Copies, Metamorphic};
 use citylights::verify::{Check, Options, Verifier};
 use citylights::visibility::offset::Offset;
@@ -44,11 +44,11 @@ fn unchanged(scene: &Scene, options: Options) {
     };
     tell("the image", &metamorphic.image());
     let mut scaled = 0;
-    for entry in STRATEGIES {
-        let strategy = registry::parse(entry.info().name).expect("a name of the registry");
+    for info in Registry::standard().infos() {
+        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
         let checks = metamorphic.verify(&strategy).expect("samplers");
         scaled += usize::from(checks.iter().any(|check| check.name == "scaled-counts"));
-        tell(entry.info().name, &checks);
+        tell(info.name, &checks);
     }
     assert!(scaled >= 5, "only {scaled} strategies tell what they choose by");
     assert!(failed.is_empty(), "{}:\n{}", scene.name(), failed.join("\n"));
@@ -65,7 +65,8 @@ fn no_change_that_changes_nothing_changes_a_small_scene() {
 #[cfg(feature = "recipe")]
 #[test]
 fn no_change_that_changes_nothing_changes_a_city() {
-    use citylights::scene::recipe::{Overrides, load};
+    use citylights::sources::Overrides;
+    use citylights::sources::recipe::load;
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let scene = load(&file, &Overrides::default()).expect("a shipped scene");
     unchanged(&scene, Options { receivers: 8, draws: 2_000, batches: 50, points: 16, ..Options::default() });
@@ -91,8 +92,8 @@ fn a_lamp_split_into_ten_leaves_the_expected_image() {
     for (a, b) in before.truths().iter().zip(after.truths()) {
         assert!((a.total() - b.total()).abs() <= 0.02 * a.total(), "{} and {}", a.total(), b.total());
     }
-    for entry in STRATEGIES.iter().filter(|entry| entry.info().claim == Claim::Unbiased) {
-        let strategy = registry::parse(entry.info().name).expect("a name of the registry");
+    for info in Registry::standard().infos().filter(|info| info.claim == Claim::Unbiased) {
+        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
         let checks = after.verify(&strategy).expect("a sampler");
         let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
         assert!(failed.is_empty(), "{}: {failed:?}", strategy.name());

@@ -13,10 +13,9 @@ use citylights::base::error::Result;
 use citylights::base::random::Stream;
 use citylights::scene::light::LightId;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::parameters::Arguments;
-use citylights::strategy::registry::{Entry, parse_from};
-use citylights::strategy::tally::Tally;
-use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use citylights::strategy::{
+    Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
+};
 use citylights::verify::{Check, Options, Verifier, picks_in_range, picks_valid};
 use common::{sixteen, stage};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -114,19 +113,20 @@ impl<const KIND: u8> LightSampler for Sampler<KIND> {
     }
 }
 
-const MUTANTS: &[Entry] = &[
-    Entry::of::<Mutant<RIGHT>>(),
-    Entry::of::<Mutant<HEAVY>>(),
-    Entry::of::<Mutant<DROPPED>>(),
-    Entry::of::<Mutant<CLAIMED>>(),
-    Entry::of::<Mutant<SCALED>>(),
-    Entry::of::<Mutant<COUNTS>>(),
-    Entry::of::<Mutant<ALLOCATES>>(),
-    Entry::of::<Mutant<GLOBAL>>(),
-    Entry::of::<Mutant<SHIFTED>>(),
-    Entry::of::<Mutant<HIDDEN>>(),
-    Entry::of::<Mutant<BEYOND>>(),
-];
+fn mutants() -> Registry {
+    Registry::empty()
+        .with::<Mutant<RIGHT>>()
+        .with::<Mutant<HEAVY>>()
+        .with::<Mutant<DROPPED>>()
+        .with::<Mutant<CLAIMED>>()
+        .with::<Mutant<SCALED>>()
+        .with::<Mutant<COUNTS>>()
+        .with::<Mutant<ALLOCATES>>()
+        .with::<Mutant<GLOBAL>>()
+        .with::<Mutant<SHIFTED>>()
+        .with::<Mutant<HIDDEN>>()
+        .with::<Mutant<BEYOND>>()
+}
 
 fn checks(kind: u8) -> Vec<Check> {
     let options = Options { allocations: Some(counting::allocations), ..Options::default() };
@@ -134,7 +134,7 @@ fn checks(kind: u8) -> Vec<Check> {
 }
 
 fn checks_with(kind: u8, options: &Options) -> Vec<Check> {
-    let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
+    let strategy = mutants().parse(NAMES[kind as usize]).expect("a mutant");
     Verifier::new(&stage(sixteen()), *options).verify(&strategy).expect("a sampler")
 }
 
@@ -170,7 +170,7 @@ fn a_right_strategy_fails_no_check_oftener_than_its_level() {
     // receiver, so that rare lights are rare.
     let stage = stage(sixteen());
     for points in ["random", "sobol", "r2"] {
-        let strategy = parse_from(MUTANTS, &format!("right:points={points}")).expect("a strategy");
+        let strategy = mutants().parse(&format!("right:points={points}")).expect("a strategy");
         let sampler = strategy.build(BuildContext { stage: &stage, seed: 1 }).expect("a sampler");
         let mut failures = std::collections::BTreeMap::new();
         for seed in 100..160 {
@@ -202,7 +202,8 @@ fn a_dropped_light_that_is_claimed_fails_weights_and_estimate() {
 #[cfg(feature = "recipe")]
 #[test]
 fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
-    use citylights::scene::recipe::{Overrides, load};
+    use citylights::sources::Overrides;
+    use citylights::sources::recipe::load;
     use citylights::visibility::offset::Offset;
     use citylights::visibility::stage::{LeaveOut, Stage};
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
@@ -210,7 +211,7 @@ fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
     let city = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let verifier = Verifier::new(&city, Options { receivers: 16, draws: 10_000, ..Options::default() });
     for (kind, meant) in [(RIGHT, None), (HEAVY, Some("weights-total")), (DROPPED, Some("coverage"))] {
-        let strategy = parse_from(MUTANTS, NAMES[kind as usize]).expect("a mutant");
+        let strategy = mutants().parse(NAMES[kind as usize]).expect("a mutant");
         let checks = verifier.verify(&strategy).expect("a sampler");
         println!("{}{}", NAMES[kind as usize], print(&checks));
         match meant {
@@ -237,7 +238,7 @@ fn a_stage_that_leaves_out_too_much_is_found() {
     let whole = stage(sixteen());
     let mut needs = whole.needs();
     needs.occlusion = false;
-    let strategy = parse_from(MUTANTS, "right").expect("a strategy");
+    let strategy = mutants().parse("right").expect("a strategy");
     let blind = whole.with_needs(needs);
     let checks = Verifier::new(&blind, Options::default()).verify(&strategy).expect("a sampler");
     let replay = checks.iter().find(|check| check.name == "replay").expect("the check");

@@ -15,11 +15,10 @@ use citylights::scene::light::{LightId, Shape};
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::{Parts, Scene};
-use citylights::strategy::erased::{Frame, FrameSampler, PerPass};
-use citylights::strategy::parameters::Arguments;
-use citylights::strategy::registry::{Configured, Entry, parse_from};
-use citylights::strategy::tally::Tally;
-use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use citylights::strategy::{
+    Arguments, BuildContext, Claim, Configured, Frame, FrameSampler, Info, LightSampler, PerPass, Picks, Registry,
+    Role, Strategy, Tally,
+};
 use citylights::verify::metamorphic::{Copies, Metamorphic};
 use citylights::verify::{Check, Options, Verifier};
 use citylights::visibility::offset::Offset;
@@ -252,19 +251,20 @@ impl LightSampler for Pass<'_> {
     }
 }
 
-const MUTANTS: &[Entry] = &[
-    Entry::of::<Mutant<RIGHT>>(),
-    Entry::of::<Mutant<PLANE>>(),
-    Entry::of::<Mutant<OVERFLOW>>(),
-    Entry::of::<Mutant<DESCENT>>(),
-    Entry::of::<Mutant<MIX>>(),
-    Entry::of::<Mutant<METRE>>(),
-    Entry::of::<Mutant<SIXTEEN>>(),
-    Entry::of::<Neighbours>(),
-];
+fn mutants() -> Registry {
+    Registry::empty()
+        .with::<Mutant<RIGHT>>()
+        .with::<Mutant<PLANE>>()
+        .with::<Mutant<OVERFLOW>>()
+        .with::<Mutant<DESCENT>>()
+        .with::<Mutant<MIX>>()
+        .with::<Mutant<METRE>>()
+        .with::<Mutant<SIXTEEN>>()
+        .with::<Neighbours>()
+}
 
 fn mutant(name: &str) -> Configured {
-    parse_from(MUTANTS, name).expect("a mutant")
+    mutants().parse(name).expect("a mutant")
 }
 
 /// The mutant fails the checks that are `meant` for it, and passes those that it should pass.
@@ -380,7 +380,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let films = &Films::of(folder, "mutants");
     let engine = &Engine { clock: &alone::Alone::new(), workers: 1, seed: 1 };
     let options = Options {
-        typed: "sixteen.toml",
+        typed: "citylights verify sixteen.toml",
         strategies: &strategies,
         budget,
         repeats: 3,
@@ -405,7 +405,9 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
 fn the_command_of_the_gate_shows_what_the_gate_saw() {
     use citylights::measure::gate::{Gate, options};
     let stage = stage(sixteen());
-    let error = Gate::new(&stage, "sixteen.toml", 17, 3).pass(&mutant("descent")).expect_err("a wrong strategy");
+    let error = Gate::new(&stage, "citylights verify sixteen.toml", 17, 3)
+        .pass(&mutant("descent"))
+        .expect_err("a wrong strategy");
     // What `verify --gate --seed 3 --strategies descent` does: of one strategy, not of seventeen.
     let checks = Verifier::new(&stage, options(1, 3)).verify(&mutant("descent")).expect("a sampler");
     let shown = checks.iter().find(|check| !check.passed).expect("a failure");

@@ -11,11 +11,10 @@ use citylights::base::random::RunKey;
 use citylights::scene::receiver::Receiver;
 use citylights::scene::{Parts, Scene};
 use citylights::shading::importance::importance;
-use citylights::strategy::erased::{AnySampler, Block, Frame};
-use citylights::strategy::parameters::Arguments;
-use citylights::strategy::registry::{Entry, STRATEGIES, parse, parse_from};
-use citylights::strategy::tally::Tally;
-use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use citylights::strategy::{
+    AnySampler, Arguments, Block, BuildContext, Claim, Frame, Info, LightSampler, Picks, Registry, Role, Strategy,
+    Tally,
+};
 use citylights::verify::{Options, Verifier};
 use citylights::visibility::stage::Stage;
 use common::{sixteen, stage};
@@ -51,7 +50,7 @@ impl<const KIND: u8> Strategy for Rekeyed<KIND> {
     }
 
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
-        Ok(Other(parse("power")?.build(context)?))
+        Ok(Other(Registry::standard().parse("power")?.build(context)?))
     }
 }
 
@@ -148,21 +147,22 @@ impl<const KIND: u8> LightSampler for Table<KIND> {
     }
 }
 
-const MUTANTS: &[Entry] = &[
-    Entry::of::<Rekeyed<PAIRS>>(),
-    Entry::of::<Rekeyed<SEEDLESS>>(),
-    Entry::of::<Rekeyed<FOURS>>(),
-    Entry::of::<Tables<FIRST>>(),
-    Entry::of::<Tables<NAN>>(),
-    Entry::of::<Tables<NEGATIVE>>(),
-    Entry::of::<Tables<SELDOM>>(),
-    Entry::of::<Tables<BEYOND>>(),
-    Entry::of::<Tables<BLIND>>(),
-];
+fn mutants() -> Registry {
+    Registry::empty()
+        .with::<Rekeyed<PAIRS>>()
+        .with::<Rekeyed<SEEDLESS>>()
+        .with::<Rekeyed<FOURS>>()
+        .with::<Tables<FIRST>>()
+        .with::<Tables<NAN>>()
+        .with::<Tables<NEGATIVE>>()
+        .with::<Tables<SELDOM>>()
+        .with::<Tables<BEYOND>>()
+        .with::<Tables<BLIND>>()
+}
 
 /// The names of the checks that fail.
-fn failed(entries: &[Entry], name: &str, stage: &Stage) -> Vec<&'static str> {
-    let strategy = parse_from(entries, name).expect(name);
+fn failed(registry: &Registry, name: &str, stage: &Stage) -> Vec<&'static str> {
+    let strategy = registry.parse(name).expect(name);
     let options = Options { receivers: 16, draws: 5_000, ..Options::default() };
     let checks = Verifier::new(stage, options).verify(&strategy).expect("a sampler");
     checks.iter().for_each(|check| println!("{name}: {check}"));
@@ -172,38 +172,38 @@ fn failed(entries: &[Entry], name: &str, stage: &Stage) -> Vec<&'static str> {
 #[test]
 fn runs_that_repeat_one_another_are_found() {
     let stage = stage(sixteen());
-    assert_eq!(failed(MUTANTS, "pairs", &stage), ["another-seed"]);
+    assert_eq!(failed(&mutants(), "pairs", &stage), ["another-seed"]);
     // So few batches that differ fail the statistics as well.
-    assert!(failed(MUTANTS, "fours", &stage).contains(&"another-seed"));
+    assert!(failed(&mutants(), "fours", &stage).contains(&"another-seed"));
 }
 
 #[test]
 fn a_strategy_that_ignores_its_seed_is_found() {
-    assert_eq!(failed(MUTANTS, "seedless", &stage(sixteen())), ["another-seed"]);
+    assert_eq!(failed(&mutants(), "seedless", &stage(sixteen())), ["another-seed"]);
 }
 
 #[test]
 fn tables_made_from_whoever_arrives_first_are_found() {
-    assert_eq!(failed(MUTANTS, "first", &stage(sixteen())), ["arrival-order"]);
+    assert_eq!(failed(&mutants(), "first", &stage(sixteen())), ["arrival-order"]);
 }
 
 #[test]
 fn weights_that_are_no_numbers_or_negative_are_a_failed_check_and_no_panic() {
     let stage = stage(sixteen());
     for name in ["nan", "negative", "seldom", "blind"] {
-        assert_eq!(failed(MUTANTS, name, &stage), ["weights-finite"], "{name}");
+        assert_eq!(failed(&mutants(), name, &stage), ["weights-finite"], "{name}");
     }
-    assert_eq!(failed(MUTANTS, "beyond", &stage), ["ids"]);
+    assert_eq!(failed(&mutants(), "beyond", &stage), ["ids"]);
 }
 
 #[test]
 fn no_strategy_repeats_itself_or_asks_who_arrived_first() {
     let few = Parts { lights: sixteen().lights[..1].to_vec(), ..sixteen() };
     for stage in [stage(sixteen()), stage(few)] {
-        for entry in STRATEGIES {
-            let failed = failed(STRATEGIES, entry.info().name, &stage);
+        for info in Registry::standard().infos() {
+            let failed = failed(&Registry::standard(), info.name, &stage);
             let ours = |name: &&str| ["another-seed", "arrival-order"].contains(name);
-            assert!(!failed.iter().any(ours), "{}: {failed:?}", entry.info().name);
+            assert!(!failed.iter().any(ours), "{}: {failed:?}", info.name);
         }
     }
 }

@@ -8,7 +8,8 @@ use citylights::scene::Parts;
 use citylights::scene::light::LightId;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
-use citylights::scene::recipe::{Overrides, load};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::load;
 use citylights::verify::Check;
 use citylights::verify::independent::{Own, Path, independent};
 use citylights::visibility::offset::Offset;
@@ -101,7 +102,7 @@ fn failed(checks: &[Check]) -> Vec<&str> {
 #[test]
 fn the_program_agrees_with_independent_arithmetic() {
     assert!(failed(&independent(&CITY, &Own(&CITY), 1, LEVEL)).is_empty());
-    for parts in citylights::scene::small::all().into_iter().chain([sixteen(), near()]) {
+    for parts in citylights::sources::small::all().into_iter().chain([sixteen(), near()]) {
         println!("{}", parts.name);
         let stage = stage(parts);
         assert!(failed(&independent(&stage, &Own(&stage), 1, LEVEL)).is_empty());

@@ -10,11 +10,10 @@ use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::scene::Parts;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::parameters::Arguments;
-use citylights::strategy::registry::{Entry, parse_from};
-use citylights::strategy::tally::Tally;
-use citylights::strategy::visible::{self, Visible};
-use citylights::strategy::{BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy};
+use citylights::strategies::visible::{self, Visible};
+use citylights::strategy::{
+    Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
+};
 use citylights::verify::{Check, Options, Verifier};
 use common::{cuboid, ground, panel, point, sixteen, stage};
 use glam::Vec3;
@@ -164,13 +163,14 @@ impl<const KIND: u8> LightSampler for Sampler<KIND> {
     }
 }
 
-const MUTANTS: &[Entry] = &[
-    Entry::of::<Learner<true>>(),
-    Entry::of::<Learner<false>>(),
-    Entry::of::<Mutant<RIGHT>>(),
-    Entry::of::<Mutant<STALE>>(),
-    Entry::of::<Mutant<SURE>>(),
-];
+fn mutants() -> Registry {
+    Registry::empty()
+        .with::<Learner<true>>()
+        .with::<Learner<false>>()
+        .with::<Mutant<RIGHT>>()
+        .with::<Mutant<STALE>>()
+        .with::<Mutant<SURE>>()
+}
 
 /// Lamps on both sides of a wall, and some in a box that is open to one side: few places see them.
 fn yard() -> Parts {
@@ -187,7 +187,7 @@ fn yard() -> Parts {
 
 /// The names of the checks that fail.
 fn failed(name: &str, parts: Parts) -> Vec<&'static str> {
-    let strategy = parse_from(MUTANTS, name).expect("a mutant");
+    let strategy = mutants().parse(name).expect("a mutant");
     let options = Options { receivers: 32, draws: 10_000, ..Options::default() };
     let checks: Vec<Check> = Verifier::new(&stage(parts), options).verify(&strategy).expect("a sampler");
     checks.iter().for_each(|check| println!("{name}: {check}"));

@@ -16,7 +16,7 @@ use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
 use citylights::record::{Claim, Interval};
-use citylights::strategy::registry::{parse, parse_list};
+use citylights::strategy::Registry;
 use citylights::verify::{Options, Truth, Verifier};
 use common::{expected, ground, point, sixteen, stage};
 use glam::Vec3;
@@ -26,7 +26,9 @@ use runs::Runs;
 fn the_oracle_keeps_its_contract() {
     let stage = stage(sixteen());
     for name in ["oracle", "oracle:mix=0.001", "oracle:mix=0.5"] {
-        let checks = Verifier::new(&stage, Options::default()).verify(&parse(name).expect(name)).expect(name);
+        let checks = Verifier::new(&stage, Options::default())
+            .verify(&Registry::standard().parse(name).expect(name))
+            .expect(name);
         let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
         assert!(checks.len() > 10 && failed.is_empty(), "{name}\n{}", failed.join("\n"));
     }
@@ -70,7 +72,7 @@ fn it_errs_least_of_all_that_pick_one_light() {
 fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let stage = stage(sixteen());
     let folder = tempfile::tempdir().expect("a folder");
-    let strategies = parse_list("all,power,oracle,intensity,restir").expect("a list");
+    let strategies = Registry::standard().parse_list("all,power,oracle,intensity,restir").expect("a list");
     let films = Films::of(folder.path(), "oracle");
     let engine = Engine { clock: &Alone::new(), workers: 2, seed: 1 };
     let options = Comparison {

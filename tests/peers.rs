@@ -9,7 +9,7 @@ use citylights::image::{self, Picture, exr};
 use citylights::peers::{Peer, mask};
 use citylights::record::store;
 use citylights::record::{Claim, RunRecord, Summary};
-use citylights::scene::recipe::{self, Overrides};
+use citylights::sources::{Overrides, recipe};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use citylights::visibility::view::Seen;

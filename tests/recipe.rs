@@ -5,8 +5,9 @@ use citylights::base::error::Error;
 use citylights::scene::Scene;
 use citylights::scene::influence::{Cutoff, Transfer};
 use citylights::scene::light::{Kind, Light, Shape};
-use citylights::scene::recipe::{Overrides, load, parse};
-use citylights::strategy::{BuildContext, registry};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::{load, parse};
+use citylights::strategy::{BuildContext, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
@@ -323,7 +324,7 @@ fn influence_ends_at_twice_the_scenes_diameter() {
         }
         let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
         for name in ["influence", "influence-pick", "influence-tail"] {
-            let strategy = registry::parse(name).expect("a strategy");
+            let strategy = Registry::standard().parse(name).expect("a strategy");
             let built = strategy.build(BuildContext { stage: &stage, seed: 1 });
             if let Err(error) = built {
                 panic!("{name} at EV100 {ev100}: {error}");

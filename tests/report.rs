@@ -247,6 +247,7 @@ fn record() -> (RunRecord, Vec<Row>) {
         command: "citylights compare scenes/village.toml --repeats 4".to_owned(),
         plan: "scenes; strategies; budget".to_owned(),
         date: "2026-11-22".to_owned(),
+        program: None,
         version: "0.1.0".to_owned(),
         revision: "67eec73".to_owned(),
         seed: 1,

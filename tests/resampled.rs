@@ -6,8 +6,7 @@ mod common;
 #[path = "common/runs.rs"]
 mod runs;
 
-use citylights::strategy::Claim;
-use citylights::strategy::registry::{Configured, parse, parse_list};
+use citylights::strategy::{Claim, Configured, Registry};
 use common::{image, sixteen, stage};
 use runs::Runs;
 
@@ -67,16 +66,16 @@ fn one_candidate_of_one_pick_is_that_pick() {
 #[test]
 fn names_hold_the_inner_strategy_and_its_parameters() {
     let name = "resampled:from=influence-tail:picks=2;cutoff=255,m=3";
-    assert_eq!(parse(name).expect("parsed").name(), name);
-    let list = parse_list("power,resampled:from=power:picks=2,m=5,uniform").expect("a list");
+    assert_eq!(Registry::standard().parse(name).expect("parsed").name(), name);
+    let list = Registry::standard().parse_list("power,resampled:from=power:picks=2,m=5,uniform").expect("a list");
     let names: Vec<&str> = list.iter().map(Configured::name).collect();
     assert_eq!(names, ["power", "resampled:from=power:picks=2,m=5", "uniform"]);
-    assert_eq!(parse("resampled:from=light-tree,m=4").expect("the defaults").name(), "resampled");
+    assert_eq!(Registry::standard().parse("resampled:from=light-tree,m=4").expect("the defaults").name(), "resampled");
 }
 
 #[test]
 fn the_claim_is_that_of_the_inner_strategy() {
-    let claim = |name: &str| parse(name).expect(name).info().claim;
+    let claim = |name: &str| Registry::standard().parse(name).expect(name).info().claim;
     assert_eq!(claim("resampled:from=uniform"), Claim::Unbiased);
     assert!(matches!(claim("resampled:from=influence"), Claim::Biased(_)));
     assert_eq!(claim("resampled:from=influence"), claim("influence"));
@@ -84,7 +83,7 @@ fn the_claim_is_that_of_the_inner_strategy() {
 
 #[test]
 fn strategies_that_give_no_candidates_are_refused_with_a_reason() {
-    let message = |name: &str| parse(name).err().map(|e| e.to_string()).unwrap_or_default();
+    let message = |name: &str| Registry::standard().parse(name).err().map(|e| e.to_string()).unwrap_or_default();
     for inner in ["all", "null", "oracle", "resampled", "restir", "stochastic-cull:draw=pass"] {
         let message = message(&format!("resampled:from={inner}"));
         assert!(

@@ -38,6 +38,7 @@ fn record() -> RunRecord {
         plan: "scenes; strategies; budget".into(),
         command: "citylights compare scenes/village.toml".to_owned(),
         date: "2026-11-22".to_owned(),
+        program: None,
         version: "0.1.0".to_owned(),
         revision: "67eec73".to_owned(),
         seed: 1,

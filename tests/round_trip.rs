@@ -5,9 +5,9 @@
 mod common;
 
 use citylights::export::{Target, export};
-use citylights::scene::file::{Overrides, open};
 use citylights::scene::light::{Light, Shape};
 use citylights::scene::{Parts, Scene};
+use citylights::sources::{Overrides, open};
 use glam::Vec3;
 use std::path::Path;
 

@@ -5,9 +5,8 @@
 mod common;
 
 use citylights::base::statistics::sidak;
-use citylights::scene::small;
-use citylights::strategy::Claim;
-use citylights::strategy::registry::{self, STRATEGIES};
+use citylights::sources::small;
+use citylights::strategy::{Claim, Registry};
 use citylights::verify::{Options, Truth, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -15,7 +14,7 @@ use common::{ground, panel, point, sixteen, stage, stage_with};
 use glam::Vec3;
 
 fn all_pass(scene: &str, stage: &Stage, options: &Options) {
-    let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.info().name).collect();
+    let names: Vec<&str> = Registry::standard().infos().map(|info| info.name).collect();
     pass(scene, &names, stage, options);
 }
 
@@ -25,7 +24,7 @@ fn pass(scene: &str, names: &[&str], stage: &Stage, options: &Options) {
     let verifier = Verifier::new(stage, *options);
     println!("{scene}");
     for name in names {
-        let strategy = registry::parse(name).expect(name);
+        let strategy = Registry::standard().parse(name).expect(name);
         let checks = verifier.verify(&strategy).expect(name);
         for check in &checks {
             println!("{name:<16} {check}");
@@ -82,7 +81,8 @@ fn the_truth_per_light_adds_up_to_the_exact_image() {
 
 #[cfg(feature = "recipe")]
 fn shipped(name: &str, seed: u64, draws: usize, level: f64) {
-    use citylights::scene::recipe::{Overrides, load};
+    use citylights::sources::Overrides;
+    use citylights::sources::recipe::load;
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
     let scene = load(&path, &Overrides::default()).expect(name);
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
@@ -100,7 +100,7 @@ fn every_strategy_keeps_its_contract_on_first_night() {
 #[ignore = "takes five minutes; for a change to strategies or to leaving out"]
 fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
     // A check keeps its level within one strategy, scene and seed; here it is asked 96 times.
-    let level = sidak(Options::default().level, 4 * 3 * STRATEGIES.len());
+    let level = sidak(Options::default().level, 4 * 3 * Registry::standard().infos().count());
     for name in ["lamps-only", "plaza", "moonlit", "stadium"] {
         for seed in 1..=3 {
             // Few draws leave means lopsided by lights that are rarely drawn: with 10,000, 2 of 12 seeds of a right

@@ -12,7 +12,7 @@ use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::light::Shape;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::erased::{Frame, PickBuffer};
+use citylights::strategy::{Frame, PickBuffer};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{ground, receiver, sampler, sixteen, stage, stage_with};

@@ -16,9 +16,10 @@ use citylights::record::{Kind, Machine, ResultFolder};
 use citylights::report::{self, Drift};
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
-use citylights::scene::recipe::Overrides;
 use citylights::shading::contribution::contribution;
-use citylights::strategy::erased::{Frame, PickBuffer};
+use citylights::sources::Overrides;
+use citylights::strategy::Registry;
+use citylights::strategy::{Frame, PickBuffer};
 use citylights::study::quality::{Finding, quality};
 use citylights::study::{self, Options};
 use citylights::visibility::offset::Offset;
@@ -57,6 +58,7 @@ fn record() -> StudyRecord {
         command: "citylights study growth".into(),
         plan: "scenes street=9f86d081; seed 1".into(),
         date: "2026-11-25".into(),
+        program: None,
         version: "0.1.0".into(),
         revision: "67eec73".into(),
         seed: 1,
@@ -246,6 +248,8 @@ const STREET: &str = include_str!("data/street.toml");
 
 fn options(folder: &Path, strategies: &str) -> Options {
     Options {
+        registry: Registry::standard(),
+        program: None,
         scenes: Vec::new(),
         overrides: Overrides::default(),
         strategies: Some(strategies.to_owned()),

@@ -6,10 +6,10 @@ mod common;
 use citylights::base::statistics::Moments;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
-use citylights::scene::recipe::{Overrides, parse};
 use citylights::scene::{Parts, Scene};
-use citylights::strategy::registry::{STRATEGIES, parse as strategy};
-use citylights::strategy::{BuildContext, Claim, Role};
+use citylights::sources::Overrides;
+use citylights::sources::recipe::parse;
+use citylights::strategy::{BuildContext, Claim, Registry, Role};
 use citylights::study::quality::{Finding, quality};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -206,12 +206,11 @@ fn baked_coordinates_change_a_picture_as_much_as_rounding_them() {
 /// Mean relative variance of each strategy that tells its probabilities, brought to one pick.
 fn variances(stage: &Stage) -> Vec<(String, f64)> {
     let mut found = Vec::new();
-    for entry in STRATEGIES {
-        let info = entry.info();
+    for info in Registry::standard().infos() {
         if info.role != Role::Choosing || info.claim != Claim::Unbiased {
             continue;
         }
-        let strategy = strategy(info.name).expect("a name of the registry");
+        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
         // Its probabilities are another's in another unit of length.
         if !strategy.scale_free() {
             continue;

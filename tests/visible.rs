@@ -13,9 +13,7 @@ use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::Parts;
 use citylights::shading::importance::importance;
-use citylights::strategy::BuildContext;
-use citylights::strategy::erased::{Frame, PickBuffer};
-use citylights::strategy::registry::parse;
+use citylights::strategy::{BuildContext, Frame, PickBuffer, Registry};
 use citylights::verify::{Options, Verifier};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -52,7 +50,7 @@ fn expected(name: &str, stage: &Stage) -> Vec<Vec<f32>> {
 /// The strategy passes all checks of its contract.
 fn assert_kept(name: &str, stage: &Stage) {
     let options = Options { receivers: 64, draws: 20_000, points: 256, ..Options::default() };
-    let checks = Verifier::new(stage, options).verify(&parse(name).expect(name)).expect(name);
+    let checks = Verifier::new(stage, options).verify(&Registry::standard().parse(name).expect(name)).expect(name);
     let failed: Vec<String> = checks.iter().filter(|check| !check.passed).map(ToString::to_string).collect();
     assert!(failed.is_empty(), "{name}: {failed:?}");
 }
@@ -151,7 +149,7 @@ fn it_is_unbiased_whatever_the_cells_and_the_tables() {
         "visible:cell=1,probes=1,cut=1",
         "visible:cell=100000,floor=0.001",
         "visible:cell=3,floor=1,points=random",
-        "visible:cell=3,picks=4,far=1,points=sobol",
+        "visible:cell=3,picks=4,points=sobol",
         "visible:memory=0",
     ] {
         assert_kept(name, &stage);
@@ -202,7 +200,7 @@ fn tables_are_the_same_whoever_makes_them() {
             assert_eq!(bits(&film.image()), made_in_order, "{name} on {threads} threads");
         }
     }
-    let strategy = parse("visible:cell=2").expect("a strategy");
+    let strategy = Registry::standard().parse("visible:cell=2").expect("a strategy");
     let counts = |seed| {
         let sampler = strategy.build(BuildContext { stage: &stage, seed }).expect("a sampler");
         let mut counts = [0.0; 64];
@@ -249,7 +247,8 @@ fn without_memory_or_need_it_is_the_tree() {
 #[cfg(feature = "recipe")]
 #[test]
 fn memory_is_bounded_and_what_is_left_out_does_not_depend_on_threads() {
-    use citylights::scene::recipe::{Overrides, load};
+    use citylights::sources::Overrides;
+    use citylights::sources::recipe::load;
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let stage = Stage::new(load(&path, &Overrides::default()).expect("a scene"), LeaveOut::Yes, Offset::SCALED);
     let tree = sampler(TREE, &stage).heap_bytes();
@@ -276,7 +275,8 @@ fn memory_is_bounded_and_what_is_left_out_does_not_depend_on_threads() {
 
 #[test]
 fn impossible_parameters_are_refused_with_what_is_allowed() {
-    let message = |text: &str| parse(text).err().map(|error| error.to_string()).unwrap_or_default();
+    let message =
+        |text: &str| Registry::standard().parse(text).err().map(|error| error.to_string()).unwrap_or_default();
     for (text, allowed) in [
         ("visible:cell=0", "0.01 to 100000"),
         ("visible:cell=-3", "0.01 to 100000"),

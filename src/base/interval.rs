@@ -35,9 +35,14 @@ pub const LARGEST: usize = 4;
 /// sees of `visible` on first-night at 64 x 36; means of lighter tails are then held more often.
 const HORIZON: f64 = 160_000.0;
 
-/// A tail is too heavy to say if its index is below this, where the parts have no mean, and the usual run has more than
-/// [`CROWDED`] in its [`LARGEST`] parts. The index is estimated: of 16 runs with a true one of 0.8, a fifth seems above.
-const LIGHT: f64 = 1.0;
+/// A tail is too heavy to say if its index is below this, and the usual run has more than [`CROWDED`] in its [`LARGEST`]
+/// parts.
+///
+/// Where the index is below 1, the parts have no mean. Hill's estimate from the upper half of the four largest parts of 16 runs has a
+/// standard deviation of 1 in √32: one of less than 1.4 does not exclude an index of 1 at 95 %. With a limit of 1 the intervals
+/// of `power` at 4 passes of `first-night` held 82 % of the time against one set of 1,600 runs, with this one 94 %; no
+/// other row changed.
+const LIGHT: f64 = 1.4;
 
 /// See [`LIGHT`].
 const CROWDED: f64 = 0.2;
@@ -217,7 +222,7 @@ mod tests {
 
     #[test]
     fn a_tail_without_a_mean_is_too_heavy_to_say() {
-        for (index, seed, least) in [(0.5, 26, 0.97), (0.8, 27, 0.8)] {
+        for (index, seed, least) in [(0.5, 26, 0.99), (0.8, 27, 0.97)] {
             let found = found(16, f64::INFINITY, seed, pareto(index));
             assert!(found.heavy > least, "Pareto {index}: {}", found.heavy);
         }

@@ -2,6 +2,7 @@
 //! statistics, intervals, rankings, relative error, colour, files, errors.
 
 pub mod colour;
+pub mod counts;
 pub mod discrete;
 pub mod double;
 pub mod draws;

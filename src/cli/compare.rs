@@ -1,8 +1,13 @@
 //! `citylights compare`: error against run time.
 
+use super::folders::{CACHE, RESULTS};
+use super::home::Home;
+use super::outcome::Outcome;
 use super::progress::Progress;
-use super::scene::{SceneOptions, pool, threads};
-use super::{Outcome, command, print, say};
+use super::scene::SceneOptions;
+use super::terminal::{print, say};
+use super::threads::{pool, threads};
+use super::values::seconds;
 use crate::base::error::{Error, Result};
 use crate::measure::clock::Cpu;
 use crate::measure::compare::{Compared, Options, compare};
@@ -18,14 +23,11 @@ use crate::record::{Kind, Machine, ResultFolder, Row, RunRecord, SCHEMA};
 use crate::report;
 use crate::report::table;
 use crate::scene::Scene;
-use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
+use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// Where finished tiles of references are kept.
-pub(super) const CACHE: &str = "results/.references";
 
 #[derive(Args)]
 pub(super) struct Arguments {
@@ -76,9 +78,9 @@ pub(super) struct Arguments {
     scene_options: SceneOptions,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
-    let every = STRATEGIES.iter().map(|entry| entry.info().name).collect::<Vec<_>>().join(",");
-    let strategies = parse_list(arguments.strategies.as_deref().unwrap_or(&every))?;
+pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
+    let strategies =
+        arguments.strategies.as_deref().map_or_else(|| home.registry.all(), |list| home.registry.parse_list(list))?;
     let peers = peers(&arguments.peers)?;
     // A folder that cannot be used must not cost the reading of scenes.
     arguments.out.as_deref().map_or(Ok(()), |out| ResultFolder::check(out, Kind::Comparison))?;
@@ -94,7 +96,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
                 Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
             );
         }
-        let asked = Asked { arguments, strategies: &strategies, peers: &peers, threads };
+        let asked = Asked { home, arguments, strategies: &strategies, peers: &peers, threads };
         let record = record(&asked, &scenes);
         if threads > environment::cores() {
             say(&format!(
@@ -116,6 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
 
 /// What the user asked for, understood.
 struct Asked<'a> {
+    home: &'a Home<'a>,
     arguments: &'a Arguments,
     strategies: &'a [Configured],
     peers: &'a [Peer],
@@ -141,7 +144,7 @@ impl Session {
             None => {
                 let names = scenes.iter().map(Scene::name).collect::<Vec<_>>().join("+");
                 let RunRecord { date, revision, .. } = &record;
-                ResultFolder::create(Path::new("results"), date, &names, revision, Kind::Comparison)?
+                ResultFolder::create(Path::new(RESULTS), date, &names, revision, Kind::Comparison)?
             }
         };
         std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
@@ -160,11 +163,11 @@ impl Session {
     }
 
     fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
-        let Asked { arguments, strategies, peers, threads } = *asked;
+        let Asked { home, arguments, strategies, peers, threads } = *asked;
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = Options {
-            typed: &arguments.scene_options.typed(file),
+            typed: &format!("{} verify {}", home.program.name, arguments.scene_options.typed(file)),
             strategies,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),
@@ -256,7 +259,7 @@ fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
 }
 
 fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
-    let Asked { arguments, strategies, peers, .. } = *asked;
+    let Asked { home, arguments, strategies, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
     let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name(), scene_hash(scene))).collect();
     RunRecord {
@@ -274,7 +277,8 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
             arguments.scene_options.describe()
         ),
         schema: SCHEMA,
-        command: command(),
+        command: home.command(),
+        program: home.foreign(),
         date: environment::date(),
         version: environment::version(),
         revision: environment::revision(),
@@ -306,12 +310,4 @@ fn python(given: Option<&Path>) -> PathBuf {
     let own = || Some(PathBuf::from("benches/peers/.venv/bin/python")).filter(|file| file.exists());
     let named = given.map(Path::to_owned).or_else(|| std::env::var_os("CITYLIGHTS_PYTHON").map(PathBuf::from));
     named.or_else(own).unwrap_or_else(|| "python3".into())
-}
-
-/// Parses a number of CPU seconds.
-pub(super) fn seconds(text: &str) -> std::result::Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|x: &f64| *x > 0.0 && *x <= 86_400.0)
-        .ok_or_else(|| "a number above 0, at most 86400, is right".into())
 }

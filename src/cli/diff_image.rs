@@ -1,7 +1,9 @@
 //! `citylights diff-image`: how far is a picture from another?
 
-use super::scene::{check_output, finite, positive};
-use super::{Outcome, print, say};
+use super::outcome::Outcome;
+use super::output::check_output;
+use super::terminal::{print, say};
+use super::values::{finite, positive};
 use crate::base::colour;
 use crate::base::error::Error;
 use crate::image::flip::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, Pooled};

@@ -1,7 +1,9 @@
 //! `citylights export`: a scene in the words of another renderer.
 
-use super::scene::{SceneOptions, check_folder};
-use super::{Outcome, print, say};
+use super::outcome::Outcome;
+use super::output::check_folder;
+use super::scene::SceneOptions;
+use super::terminal::{print, say};
 use crate::export::{Target, export};
 use clap::Args;
 use std::path::PathBuf;

@@ -1,7 +1,9 @@
 //! `citylights inspect`: what is in a scene?
 
-use super::scene::{SceneOptions, pool, threads};
-use super::{Outcome, print};
+use super::outcome::Outcome;
+use super::scene::SceneOptions;
+use super::terminal::print;
+use super::threads::{pool, threads};
 use crate::measure::inspect::{Inspection, Part, inspect};
 use clap::Args;
 

@@ -1,9 +1,10 @@
 //! `citylights list`: which strategies, scenes and studies are there?
 
-use super::{Outcome, print};
+use super::home::Home;
+use super::outcome::Outcome;
+use super::terminal::print;
 use crate::base::error::Error;
-use crate::strategy::Claim;
-use crate::strategy::registry::{STRATEGIES, parse};
+use crate::strategy::{Claim, Configured};
 use crate::study::{Entry, STUDIES};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -26,9 +27,9 @@ enum What {
     Studies,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
     let list = match arguments.what {
-        What::Strategies => strategies()?,
+        What::Strategies => home.registry.all()?.iter().map(strategy).collect(),
         What::Scenes => scenes(Path::new("scenes"))?,
         What::Studies => studies(),
     };
@@ -48,13 +49,8 @@ struct Item {
     json: Value,
 }
 
-fn strategies() -> Result<Vec<Item>, Error> {
-    STRATEGIES.iter().map(|entry| strategy(entry.info().name)).collect()
-}
-
-fn strategy(name: &str) -> Result<Item, Error> {
-    let configured = parse(name)?;
-    let info = configured.info();
+fn strategy(configured: &Configured) -> Item {
+    let (name, info) = (configured.name(), configured.info());
     let claim = match info.claim {
         Claim::Unbiased => "unbiased".to_owned(),
         Claim::Biased(why) => format!("biased: {why}"),
@@ -69,7 +65,7 @@ fn strategy(name: &str) -> Result<Item, Error> {
         .map(|p| json!({ "name": p.name, "default": p.default, "allowed": p.allowed, "meaning": p.meaning }))
         .collect();
     let json = json!({ "name": name, "summary": info.summary, "source": info.source, "claim": claim, "parameters": parameters });
-    Ok(Item { text, json })
+    Item { text, json }
 }
 
 fn studies() -> Vec<Item> {

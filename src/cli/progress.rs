@@ -1,6 +1,6 @@
 //! Progress on stderr, and Ctrl-C.
 
-use super::say;
+use super::terminal::say;
 use crate::measure::observer::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};

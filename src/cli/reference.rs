@@ -1,10 +1,13 @@
 //! `citylights reference`: the exact image.
 
-use super::compare::seconds;
+use super::folders::CACHE;
+use super::outcome::Outcome;
+use super::output::{check_output, save};
 use super::progress::Progress;
-use super::render::save;
-use super::scene::{SceneOptions, check_output, pool, threads};
-use super::{Outcome, print, say};
+use super::scene::SceneOptions;
+use super::terminal::{print, say};
+use super::threads::{pool, threads};
+use super::values::seconds;
 use crate::measure::reference::{Reference, WORK_S, Wanted};
 use crate::measure::target::Target;
 use clap::Args;
@@ -25,7 +28,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", default_value_t = WORK_S, value_parser = seconds)]
     reference_work: f64,
     /// Folder of finished tiles; an interrupted run goes on from there
-    #[arg(long, value_name = "DIR", default_value = super::compare::CACHE)]
+    #[arg(long, value_name = "DIR", default_value = CACHE)]
     cache: PathBuf,
     /// Threads; all cores by default. The picture does not depend on it
     #[arg(long, value_parser = threads)]

@@ -1,16 +1,17 @@
 //! `citylights render`: one picture by one strategy.
 
-use super::scene::{SceneOptions, check_output, pool, threads};
-use super::{Outcome, print, say};
-use crate::base::error::{Error, Result};
+use super::home::Home;
+use super::outcome::Outcome;
+use super::output::{check_output, save};
+use super::scene::SceneOptions;
+use super::terminal::print;
+use super::threads::{pool, threads};
+use super::values::pixel;
+use crate::base::error::Error;
 use crate::base::random::RunKey;
-use crate::image::{self, Picture};
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::render::picture::picture;
 use crate::strategy::BuildContext;
-use crate::strategy::registry;
-use crate::visibility::stage::Stage;
 use crate::visibility::view::Seen;
 use clap::Args;
 use std::path::PathBuf;
@@ -41,8 +42,8 @@ pub(super) struct Arguments {
     scene_options: SceneOptions,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
-    let strategy = registry::parse(&arguments.strategy)?;
+pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
+    let strategy = home.registry.parse(&arguments.strategy)?;
     if let Some(output) = &arguments.output {
         check_output(output)?;
     }
@@ -61,17 +62,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         }
         Ok(Outcome::Done)
     })
-}
-
-/// Writes what the camera sees.
-pub(super) fn save(stage: &Stage, receivers: &[glam::Vec3], output: &std::path::Path) -> Result<()> {
-    let (width, height) = stage.view().resolution();
-    let picture = Picture { width, height, pixels: picture(stage, receivers) };
-    let bad = image::write(output, &picture, stage.scene().exposure())?;
-    if bad > 0 {
-        say(&format!("{bad} pixels are not finite; they are magenta in the picture"));
-    }
-    Ok(())
 }
 
 /// Replays the passes of one pixel.
@@ -97,9 +87,4 @@ fn one_pixel(plan: &Plan<'_>, x: u32, y: u32, passes: u32) -> anyhow::Result<Out
         print(&format!("pass {pass}: {} cd/m^2, mean {}\n", single.image()[0], film.image()[0]))?;
     }
     Ok(Outcome::Done)
-}
-
-fn pixel(text: &str) -> std::result::Result<(u32, u32), String> {
-    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    parsed.ok_or_else(|| "two whole numbers are right, as 10,20".into())
 }

@@ -1,6 +1,7 @@
 //! `citylights report`: tables and plots again from raw rows.
 
-use super::{Outcome, print};
+use super::outcome::Outcome;
+use super::terminal::print;
 use crate::report::{self, Section, splice};
 use clap::Args;
 use std::path::PathBuf;

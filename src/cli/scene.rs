@@ -1,13 +1,13 @@
 //! Options that say which scene, and how it is prepared.
 
-use super::say;
+use super::terminal::say;
+use super::values::{finite, positive, resolution};
 use crate::base::colour;
 use crate::base::error::Error;
 use crate::base::names;
-use crate::image::Format;
 use crate::scene::Scene;
-use crate::scene::file::{self, Overrides};
 use crate::scene::light_sampling::LightSampling;
+use crate::sources::{self, Overrides};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use clap::Args;
@@ -46,7 +46,7 @@ impl SceneOptions {
     /// Loads a scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, Error> {
         let ev100 = self.exposure.map(colour::ev100).or(self.ev100);
-        let scene = file::open(
+        let scene = sources::open(
             path,
             &Overrides {
                 seed: self.scene_seed,
@@ -112,60 +112,6 @@ impl SceneOptions {
         }
         stage
     }
-}
-
-/// Refuses a picture that could not be written, before the work instead of after it.
-pub(super) fn check_output(file: &Path) -> Result<(), Error> {
-    Format::of(file)?;
-    check_folder(file)
-}
-
-/// Refuses a file that could not be written, before the work instead of after it.
-pub(super) fn check_folder(file: &Path) -> Result<(), Error> {
-    if file.is_dir() {
-        return Err(Error::Invalid(format!("cannot write {}: it is a folder", file.display())));
-    }
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(Error::Invalid(format!(
-            "cannot write {}: there is no folder {}",
-            file.display(),
-            folder.display()
-        )));
-    }
-    let probe = folder.join(format!(".citylights-{}", std::process::id()));
-    std::fs::write(&probe, b"").and_then(|()| std::fs::remove_file(&probe)).map_err(Error::io("write", file))
-}
-
-/// A pool of `threads` threads; all cores where none is given.
-pub(super) fn pool(threads: Option<u32>) -> anyhow::Result<rayon::ThreadPool> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0) as usize).build()?)
-}
-
-/// Parses a number of threads.
-pub(super) fn threads(text: &str) -> Result<u32, String> {
-    text.parse().ok().filter(|n| (1..=1024).contains(n)).ok_or_else(|| "a whole number from 1 to 1024 is right".into())
-}
-
-/// Parses pixels across and down.
-pub(super) fn resolution(text: &str) -> Result<(u32, u32), String> {
-    let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    parsed
-        .filter(|&(w, h): &(u32, u32)| w > 0 && h > 0)
-        .ok_or_else(|| "two whole numbers of 1 or more are right, as 240x135".into())
-}
-
-/// Parses an exposure value.
-pub(super) fn finite(text: &str) -> Result<f32, String> {
-    text.parse()
-        .ok()
-        .filter(|x: &f32| x.is_finite() && x.abs() <= 60.0)
-        .ok_or_else(|| "a number from -60 to 60 is right".into())
-}
-
-/// Parses a factor.
-pub(super) fn positive(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_normal() && *x > 0.0).ok_or_else(|| "a number above 0 is right".into())
 }
 
 fn offset(text: &str) -> Result<Offset, String> {

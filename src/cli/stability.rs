@@ -1,6 +1,7 @@
 //! `citylights stability`: is the arithmetic right where it is hardest?
 
-use super::{Outcome, print};
+use super::outcome::Outcome;
+use super::terminal::print;
 use crate::stability::vectors::{self, AREALESS, AREALESS_LIMIT, IRRADIANCE_LIMIT, Judged, SOLID_ANGLE_LIMIT};
 use crate::stability::{CASES, Finding, Tally};
 use clap::Args;

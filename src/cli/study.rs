@@ -1,14 +1,17 @@
 //! `citylights study`: the experiments behind results/.
 
-use super::compare::{CACHE, seconds};
+use super::folders::{CACHE, RESULTS};
+use super::home::Home;
+use super::outcome::Outcome;
 use super::progress::Progress;
-use super::scene::{pool, resolution, threads};
-use super::{Outcome, command, print, say};
+use super::terminal::{print, say};
+use super::threads::{pool, threads};
+use super::values::{resolution, seconds};
 use crate::base::error::Error;
 use crate::measure::environment;
 use crate::record::{Kind, ResultFolder};
 use crate::report;
-use crate::scene::file::Overrides;
+use crate::sources::Overrides;
 use crate::study::{Entry, Options, STUDIES, find};
 use clap::Args;
 use std::cell::OnceCell;
@@ -66,7 +69,7 @@ pub(super) struct Arguments {
     threads: Option<u32>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
+pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
     let all = arguments.name == "all";
     let studies = if all { STUDIES.to_vec() } else { vec![find(&arguments.name)?] };
     // A folder that cannot be used must not cost the studies before it.
@@ -74,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         studies.iter().try_for_each(|study| ResultFolder::check(&folder(out, study, all), Kind::Study))?;
     }
     let progress = Progress::new()?;
-    let options = options(arguments);
+    let options = options(arguments, home);
     pool(Some(options.threads as u32))?.install(|| {
         for study in studies {
             progress.scene(study.name);
@@ -85,14 +88,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
                     None => {
                         let name = format!("study-{}", study.name);
                         let (date, revision) = (environment::date(), environment::revision());
-                        ResultFolder::create(Path::new("results"), &date, &name, &revision, Kind::Study)?
+                        ResultFolder::create(Path::new(RESULTS), &date, &name, &revision, Kind::Study)?
                     }
                 };
                 let path = made.get_or_init(|| folder.path().to_owned()).display();
                 say(&format!("study {}: rows go to {path}", study.name));
                 Ok(folder)
             };
-            let finished = study.run(&options, command(), &open, &progress).inspect_err(|error| {
+            let finished = study.run(&options, home.command(), &open, &progress).inspect_err(|error| {
                 if let (Error::Interrupted, Some(path)) = (error, made.get()) {
                     let path = path.display();
                     say(&format!("finished rows are in {path}; the same study with --out {path} goes on from there"));
@@ -110,9 +113,11 @@ fn folder(out: &Path, study: &Entry, all: bool) -> PathBuf {
     if all { out.join(study.name) } else { out.to_owned() }
 }
 
-fn options(arguments: &Arguments) -> Options {
+fn options(arguments: &Arguments, home: &Home<'_>) -> Options {
     let overrides = Overrides { seed: arguments.scene_seed, resolution: arguments.resolution, ..Overrides::default() };
     Options {
+        registry: home.registry.clone(),
+        program: home.foreign(),
         scenes: arguments.scenes.clone(),
         overrides,
         strategies: arguments.strategies.clone(),

@@ -1,16 +1,19 @@
 //! `citylights verify`: does every strategy keep its promises?
 
+use super::home::Home;
+use super::outcome::Outcome;
 use super::progress::Progress;
-use super::scene::{SceneOptions, pool, threads};
-use super::{Outcome, print, say};
+use super::scene::SceneOptions;
+use super::terminal::{print, say};
+use super::threads::{pool, threads};
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use crate::base::statistics::sidak;
 use crate::measure::gate;
 use crate::measure::observer::Observer;
-use crate::scene::{Parts, Scene, small};
-use crate::strategy::Claim;
-use crate::strategy::registry::{Configured, STRATEGIES, parse_list};
+use crate::scene::{Parts, Scene};
+use crate::sources::small;
+use crate::strategy::{Claim, Configured};
 use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
 use crate::verify::{self, BY_CHANCE, Check, Options, Verifier};
 use clap::Args;
@@ -56,9 +59,9 @@ pub(super) struct Arguments {
     scene_options: SceneOptions,
 }
 
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
-    let every = STRATEGIES.iter().map(|entry| entry.info().name).collect::<Vec<_>>().join(",");
-    let strategies = parse_list(arguments.strategies.as_deref().unwrap_or(&every))?;
+pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
+    let strategies =
+        arguments.strategies.as_deref().map_or_else(|| home.registry.all(), |list| home.registry.parse_list(list))?;
     let scenes: Vec<Scene> = if arguments.scenes.is_empty() {
         small::all().into_iter().map(Scene::new).collect::<Result<_>>()?
     } else {
@@ -122,8 +125,7 @@ fn verify(
     let verifier = Verifier::new(&stage, options);
     let copies = (!arguments.gate).then(|| Copies::new(scene, whole.offset(), by)).transpose()?;
     // The changes are many, and each is looked at alone.
-    let fewer = Options { receivers: options.receivers.min(8), draws: options.draws / 4, batches: 50, ..options };
-    let metamorphic = copies.as_ref().map(|copies| Metamorphic::new(copies, fewer));
+    let metamorphic = copies.as_ref().map(|copies| Metamorphic::new(copies, options.fewer()));
     let found: Vec<Found> = strategies
         .par_iter()
         .map(|strategy| {

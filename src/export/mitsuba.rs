@@ -7,10 +7,10 @@
 //! Source: Mitsuba 3.9 documentation of `direct`, `perspective`, `hdrfilm`, `area`, `point`, `spot`, `directional`.
 
 use super::cone::{Cone, Table};
+use super::files::{Export, SAMPLES};
 use super::meshes::{by_material, by_radiance};
 use super::serialized;
 use super::text::{Three, aim, word};
-use super::{Export, SAMPLES};
 use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::light::Shape;

@@ -10,9 +10,9 @@
 //! sections 5.4 and 12.
 
 use super::cone::{Cone, Smooth};
+use super::files::{Export, SAMPLES};
 use super::meshes::{Corners, by_material, by_radiance};
 use super::text::{Number, Three, aim, word};
-use super::{Export, SAMPLES};
 use crate::scene::Scene;
 use crate::scene::camera::Camera;
 use crate::scene::light::Shape;

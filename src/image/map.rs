@@ -1,6 +1,8 @@
 //! A map of errors for the eye: dark violet is none, pale yellow is most.
 
-use super::{Format, Picture, exr, png};
+use super::format::Format;
+use super::picture::Picture;
+use super::{exr, png};
 use crate::base::error::Result;
 use crate::base::file::write_whole;
 use std::path::Path;

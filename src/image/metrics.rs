@@ -1,7 +1,7 @@
 //! How far are two pictures apart, in figures?
 
-use super::Picture;
 use super::flip::{self, Exposures, Pooled};
+use super::picture::Picture;
 use crate::base::colour::luminance;
 use crate::base::error::{Error, Result};
 use crate::base::rel_mse::{Means, RelMse};

@@ -1,6 +1,6 @@
 //! Linear light to 8 bits that a screen shows, and back.
 
-use super::{MOST_PIXELS, Picture};
+use super::picture::{MOST_PIXELS, Picture};
 use crate::base::colour::{srgb_decode, srgb_encode};
 use crate::base::error::{Error, Result};
 use ::image::codecs::png::{PngDecoder, PngEncoder};

@@ -1,7 +1,6 @@
 //! The main job: all strategies on one scene, interleaved, error against time.
 
 use super::curve::Curve;
-use super::engine::Engine;
 use super::errors::Truth;
 use super::experiment::{Experiment, Found, Keep, Runs};
 use super::films::Films;
@@ -9,7 +8,7 @@ use super::gate::Gate;
 use super::headline::{self, Entry, Headline};
 use super::observer::Observer;
 use super::oracle;
-use super::plan::{self, Budget, Pilot};
+use super::plan::{self, Pilot};
 use super::reference::{Reference, Wanted, scene_hash};
 use super::summary::{self, bias};
 use super::target::Target;
@@ -17,32 +16,10 @@ use crate::base::error::Result;
 use crate::base::statistics::sidak;
 use crate::record::store::RowWriter;
 use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Summary};
-use crate::strategy::Role;
-use crate::strategy::registry::Configured;
+use crate::strategy::{Configured, Role};
 use crate::visibility::stage::Stage;
-use std::path::Path;
 
-/// How a comparison is done.
-pub struct Options<'a> {
-    /// The scene as the user named it, with the options that it was loaded with: for commands that show a failure.
-    pub typed: &'a str,
-    /// The strategies.
-    pub strategies: &'a [Configured],
-    /// What each may spend in one run.
-    pub budget: Budget,
-    /// Independent runs.
-    pub repeats: u32,
-    /// The user's seed.
-    pub seed: u64,
-    /// Who times the runs.
-    pub engine: &'a Engine<'a>,
-    /// Most counted work of the reference, in nominal CPU seconds.
-    pub reference_work_s: f64,
-    /// Folder of cached references.
-    pub cache: &'a Path,
-    /// Where the last image of each finished run is kept.
-    pub films: &'a Films,
-}
+pub use super::options::Options;
 
 /// What a comparison found on one scene.
 pub struct Compared<'a> {
@@ -158,7 +135,7 @@ fn hold_to_claims(options: &Options<'_>, summaries: &mut [Summary], truth: &Trut
             let Interval { mean, low, high } = found.times(100.0);
             summary.error = Some(format!(
                 "biased: the image's mean is off by {mean:+.3} % ({low:+.3} % to {high:+.3} %, simultaneous 99 % interval); \
-                 citylights verify {} --seed {} --strategies {} --only image-mean",
+                 {} --seed {} --strategies {} --only image-mean",
                 options.typed, options.seed, summary.strategy
             ));
         }

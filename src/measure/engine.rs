@@ -11,7 +11,7 @@
 //! A call that blocks until a job of the pool is done (a channel's `recv` after `rayon::spawn`) waits for ever, as it does in
 //! any pool of one thread.
 
-use super::clock::{Clock, Spent};
+use super::clock::{Clock, Cpu, Spent};
 use super::observer::Observer;
 use crate::base::error::{Error, Result};
 use crate::base::random::Stream;
@@ -19,8 +19,7 @@ use crate::record::Row;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::BuildContext;
-use crate::strategy::registry::Configured;
+use crate::strategy::{BuildContext, Configured};
 use crate::visibility::stage::Stage;
 use glam::Vec3;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -207,6 +206,15 @@ impl Done {
             ..Row::blank(scene.to_owned(), strategy.to_owned(), run, passes)
         }
     }
+}
+
+/// CPU seconds of a part of so many blocks, each from nothing, alone on one thread.
+///
+/// # Errors
+/// A strategy that cannot serve the scene; no thread to run on.
+pub fn part_s(block: Block<'_>, times: u64, part: fn(&Done) -> f64) -> Result<f64> {
+    let all = |meter: Meter<'_>| (0..times).map(|_| block.run(meter).map(|done| part(&done))).sum();
+    Engine { clock: &Cpu::new(), workers: 1, seed: 0 }.alone(all)?
 }
 
 /// The seed that a run's sampler is built with.

@@ -10,7 +10,7 @@ use super::target::Target;
 use crate::base::error::Result;
 use crate::base::random::{RunKey, hash};
 use crate::record::Row;
-use crate::strategy::registry::Configured;
+use crate::strategy::Configured;
 use glam::Vec3;
 
 /// What is run.

@@ -7,7 +7,7 @@
 use super::engine::Account;
 use crate::base::error::{Error, Result};
 use crate::base::statistics::sidak;
-use crate::strategy::registry::Configured;
+use crate::strategy::Configured;
 use crate::verify::independent::{Own, independent};
 use crate::verify::{BY_CHANCE, Check, Options, Verifier, charged};
 use crate::visibility::stage::Stage;
@@ -20,8 +20,8 @@ const LEVEL: f64 = 1e-4;
 pub struct Gate<'a> {
     stage: &'a Stage,
     verifier: Verifier<'a>,
-    /// As the user named it, with the options that it was loaded with.
-    scene: String,
+    /// What somebody types to verify the scene.
+    typed: String,
     seed: u64,
     /// The check of the scene that failed, once it was looked at.
     arithmetic: OnceLock<Option<Check>>,
@@ -40,11 +40,10 @@ pub fn arithmetic(stage: &Stage, seed: u64) -> Vec<Check> {
 }
 
 impl<'a> Gate<'a> {
-    /// A gate for so many strategies on a stage; `scene` is how the user named it, with the options that it was loaded
-    /// with.
-    pub fn new(stage: &'a Stage, scene: &str, strategies: usize, seed: u64) -> Self {
+    /// A gate for so many strategies on a stage; `typed` is what somebody types to verify the scene.
+    pub fn new(stage: &'a Stage, typed: &str, strategies: usize, seed: u64) -> Self {
         let verifier = Verifier::new(stage, options(strategies, seed));
-        Self { stage, verifier, scene: scene.to_owned(), seed, arithmetic: OnceLock::new() }
+        Self { stage, verifier, typed: typed.to_owned(), seed, arithmetic: OnceLock::new() }
     }
 
     /// An error that names the check that a strategy fails, or its scene: one line, with the command that shows it.
@@ -61,10 +60,10 @@ impl<'a> Gate<'a> {
     fn line(&self, check: &Check, strategy: &str) -> String {
         let Check { name, statistic, limit, .. } = check;
         format!(
-            "failed check `{name}`{}: statistic {statistic:.3e}, limit {limit:.3e}; citylights verify {} --gate --seed {} \
+            "failed check `{name}`{}: statistic {statistic:.3e}, limit {limit:.3e}; {} --gate --seed {} \
              --strategies {strategy} --only {name}",
             check.place(),
-            self.scene,
+            self.typed,
             self.seed
         )
     }

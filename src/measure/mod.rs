@@ -17,6 +17,7 @@ pub mod gate;
 pub mod headline;
 pub mod inspect;
 pub mod observer;
+mod options;
 mod oracle;
 pub mod plan;
 mod ranking;

@@ -7,29 +7,26 @@
 //! What it weighs at a receiver depends on the receiver alone: that is done once for all runs, and there are as many
 //! receivers as the counted work allows.
 
-use super::compare::Options;
 use super::errors::{Errors, Truth};
 use super::experiment::Runs;
 use super::figure::Figure;
 use super::observer::Observer;
+use super::options::Options;
 use super::plan::PASSES;
-use super::summary::{blank, counts};
+use super::summary::blank;
 use super::target::{self, Target};
 use super::work::nominal_s;
+use crate::base::counts::Counts;
 use crate::base::draws::{Points, Sequence};
 use crate::base::error::Result;
 use crate::base::interval::Tail;
 use crate::base::random::RunKey;
 use crate::record::{Interval, Summary};
-use crate::render::counts::Counts;
 use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Source};
-use crate::strategy::registry::Configured;
-use crate::strategy::tally::Work;
-use crate::strategy::{BuildContext, Pick, Role};
+use crate::strategy::{AnySampler, BuildContext, Configured, Pick, Role, Source};
 use crate::visibility::stage::Stage;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -44,7 +41,7 @@ const FEWEST_RECEIVERS: usize = 64;
 /// Independent runs of an oracle.
 const RUNS: u32 = 96;
 
-/// Work is counted at so many receivers.
+/// Counts is counted at so many receivers.
 const COUNTED: usize = 16;
 
 /// Most work of an oracle on one scene, in nominal CPU seconds.
@@ -173,13 +170,13 @@ impl Ground<'_> {
             receivers: Some(floor.receivers.len() as u64),
             rel_mse: floor.figure(self.rungs.len() - 1).interval(),
             heap_bytes: sampler.heap_bytes() as u64,
-            counts: counts(work),
+            counts: work,
             ..blank
         };
         Ok((summary, Some(floor)))
     }
 
-    /// Work at a few receivers, over as many passes as every strategy's is counted.
+    /// Counts at a few receivers, over as many passes as every strategy's is counted.
     fn count(&self, sampler: &dyn AnySampler, measured: &[Receiver]) -> Counts {
         let few = target::spread(measured, COUNTED);
         let key = RunKey { seed: !self.seed, run: 0 };
@@ -197,7 +194,7 @@ impl Cost {
     /// As counted at a few of these receivers.
     fn of_few(source: &dyn Source, receivers: &[Receiver]) -> Self {
         let few = target::spread(receivers, COUNTED);
-        let (mut arrivals, mut passes) = (Work::default(), Work::default());
+        let (mut arrivals, mut passes) = (Counts::default(), Counts::default());
         let (mut scratch, mut picks) = (source.scratch(), Vec::new());
         for at in &few {
             source.arrive(at, &mut *scratch, Some(&mut arrivals));
@@ -207,8 +204,7 @@ impl Cost {
             }
         }
         let (samples, picks) = (few.len() as u64 * u64::from(PASSES), picks.len() as u64);
-        let arrivals = Counts { work: arrivals, ..Counts::default() };
-        let passes = Counts { samples, picks, shadow_rays: picks, work: passes, ..Counts::default() };
+        let passes = Counts { samples, picks, shadow_rays: picks, ..passes };
         let share = |counts: &Counts, of: u64| nominal_s(counts) / of.max(1) as f64;
         Self { arrival_s: share(&arrivals, few.len() as u64), pass_s: share(&passes, samples) }
     }
@@ -289,8 +285,8 @@ impl Chooser<'_> {
 mod tests {
     use super::*;
     use crate::measure::observer::Unobserved;
-    use crate::scene::file::{self, Overrides};
-    use crate::strategy::registry::parse;
+    use crate::sources::{self, Overrides};
+    use crate::strategy::Registry;
     use crate::visibility::offset::Offset;
     use crate::visibility::stage::LeaveOut;
     use std::path::Path;
@@ -298,12 +294,12 @@ mod tests {
     #[test]
     fn runs_after_one_arrival_are_those_that_each_makes_by_itself() {
         let small = Overrides { resolution: Some((64, 36)), ..Overrides::default() };
-        let scene = file::open(Path::new("scenes/first-night.toml"), &small).expect("a scene");
+        let scene = sources::open(Path::new("scenes/first-night.toml"), &small).expect("a scene");
         let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
         let receivers = target::spread(stage.receivers(), 50);
         let keys = [0, 1, 5].map(|run| RunKey { seed: 3, run });
         for name in ["oracle", "oracle:points=sobol", "oracle:points=random", "visible", "resampled"] {
-            let strategy = parse(name).expect(name);
+            let strategy = Registry::standard().parse(name).expect(name);
             let sampler = strategy.build(BuildContext { stage: &stage, seed: 3 }).expect(name);
             let source = sampler.source().expect(name);
             let chooser = Chooser { source, points: strategy.points(), receivers: &receivers, rungs: &[1, 4, 6] };

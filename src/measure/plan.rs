@@ -10,15 +10,14 @@ use super::errors::Truth;
 use super::target::{self, Target};
 use super::work::nominal_s;
 use crate::base::colour::luminance;
+use crate::base::counts::Counts;
 use crate::base::draws::Points;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
-use crate::render::counts::Counts;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::BuildContext;
-use crate::strategy::registry::Configured;
+use crate::strategy::{BuildContext, Configured};
 use glam::Vec3;
 
 /// What one strategy may spend in one run.

@@ -8,10 +8,8 @@ use super::spread::{Parts, Spread};
 use crate::base::error::Result;
 use crate::base::interval::{Bounds, Tail};
 use crate::base::statistics::{Moments, normal_quantile};
-use crate::record::{Claim, Counts, Interval, Point, Row, Summary};
-use crate::render::counts as render;
-use crate::strategy::registry::Configured;
-use crate::strategy::{Claim as StrategyClaim, Role};
+use crate::record::{Claim, Interval, Point, Row, Summary};
+use crate::strategy::{Claim as StrategyClaim, Configured, Role};
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub fn blank(strategy: &Configured) -> Summary {
@@ -41,7 +39,7 @@ pub fn of(
         Some(Ok(pilot)) if ladder.is_empty() => {
             begun.skipped = Some(format!("skipped: one pass is {:.2} s of counted work", pilot.work_s(1)));
         }
-        Some(Ok(pilot)) => begun.counts = counts(pilot.counts),
+        Some(Ok(pilot)) => begun.counts = pilot.counts,
         None => {}
     }
     let (mut summary, jackknife) = summarise(begun, truth, runs, ladder);
@@ -166,23 +164,6 @@ fn cost(runs: &Runs, ladder: &[u32]) -> [Interval; 2] {
     let passes = pairs().map(|(few, many)| pass(few, many)).collect();
     let arrivals = pairs().map(|(few, many)| few.cpu_s - f64::from(first) * pass(few, many)).collect();
     [Figure::signed_mean(arrivals).interval(), Figure::signed_mean(passes).interval()]
-}
-
-/// Counts as they are recorded.
-pub(super) fn counts(found: render::Counts) -> Counts {
-    Counts {
-        samples: found.samples,
-        picks: found.picks,
-        shadow_rays: found.shadow_rays,
-        blocked: found.blocked,
-        zero_intensity: found.zero_intensity,
-        behind_surface: found.behind_surface,
-        behind_light: found.behind_light,
-        nodes: found.work.nodes,
-        weighed: found.work.weighed,
-        candidates: found.work.candidates,
-        choosing_rays: found.work.shadow_rays,
-    }
 }
 
 /// Whether the two halves of the runs differ by more than their intervals.

@@ -3,7 +3,7 @@
 //! Plans are made in counted work: how far a strategy goes must not depend on how fast, or how busy, a machine is. Counts
 //! become *nominal seconds* at the rates committed here; a real machine may be slower or faster.
 
-use crate::render::counts::Counts;
+use crate::base::counts::Counts;
 
 /// Names the rates below in records: to be raised whenever one changes, since other rows follow.
 pub const RATES: u32 = 1;
@@ -23,14 +23,14 @@ const CANDIDATE: f64 = 15.0;
 
 /// Nominal seconds of counted work.
 pub fn nominal_s(counts: &Counts) -> f64 {
-    let rays = counts.shadow_rays + counts.work.shadow_rays;
+    let rays = counts.shadow_rays + counts.choosing_rays;
     let parts = [
         (counts.samples, SAMPLE),
         (counts.picks, PICK),
         (rays, RAY),
-        (counts.work.nodes, NODE),
-        (counts.work.weighed, WEIGHED),
-        (counts.work.candidates, CANDIDATE),
+        (counts.nodes, NODE),
+        (counts.weighed, WEIGHED),
+        (counts.candidates, CANDIDATE),
     ];
     parts.iter().map(|&(count, ns)| count as f64 * ns).sum::<f64>() * 1e-9
 }

@@ -15,7 +15,7 @@ mod script;
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use crate::export::Target as Format;
-use crate::strategy::parameters::Arguments;
+use crate::strategy::Arguments;
 
 /// A renderer that can be named.
 struct Kind {

@@ -4,7 +4,7 @@
 //! removed in marked folders alone; one without a mark that is not empty is somebody's own, and is refused. The mark is
 //! also the lock: whoever writes holds the operating system's lock on it, which ends with the process however that ends.
 
-use super::store::file_name;
+use super::files::{RUN_FILE, STUDY_FILE, file_name, input};
 use crate::base::error::{Error, Result};
 use crate::base::file::{remove_partials, sync_folder_of};
 use serde::{Deserialize, Serialize};
@@ -146,7 +146,7 @@ impl ResultFolder {
             Ok(mark) if mark.schema == MARK_SCHEMA => Ok(Some(mark.kind)),
             Ok(mark) => {
                 let text = format!("is {}, this program knows {MARK_SCHEMA}: name another folder", mark.schema);
-                Err(super::store::input(&file, None, "schema", text))
+                Err(input(&file, None, "schema", text))
             }
             // Nothing else is written before it.
             Err(_) if is_empty(&self.path)? => Ok(None),
@@ -188,7 +188,7 @@ fn is_empty(path: &Path) -> Result<bool> {
 
 fn foreign(path: &Path) -> Error {
     let folder = path.display();
-    let results = [super::store::RUN_FILE, super::study_store::STUDY_FILE].iter().any(|name| path.join(name).exists());
+    let results = [RUN_FILE, STUDY_FILE].iter().any(|name| path.join(name).exists());
     let why = if results {
         "holds results of an earlier version, which are read but not gone on with"
     } else {

@@ -1,28 +1,44 @@
-//! The raw facts of a comparison, as they lie on disk: which values, in which units, in which schema.
+//! Which raw facts does a comparison leave on disk: which values, in which units, in which schema?
 //!
 //! A result folder holds `run.json` (a [`RunRecord`]: what was run, where, and what needs all runs together) and
 //! `runs.csv` (one [`Row`] per strategy, run and budget). Tables, pages and plots are made again from these two alone.
 //! Numbers are in base units, with the unit in the name: `cpu_s`, `heap_bytes`; shares and relMSE have none. A
 //! [`study`]'s folder holds `study.json` and a CSV file a table in the same manner.
+//!
+//! | question | where |
+//! |---|---|
+//! | what was run, by what, where? | [`RunRecord`], [`Program`], [`Machine`] |
+//! | what is known of a scene? | [`SceneRecord`] |
+//! | what of a strategy on it, after all runs, and how far off may it be? | [`Summary`], [`Interval`] |
+//! | what did one run come to? | [`Row`] |
+//! | what did a study come to? | [`study`] |
+//! | which folders hold results, and who writes in one? | [`ResultFolder`] |
+//! | how do a comparison and a study survive an interruption? | [`store`], [`study_store`] |
+//! | may a run go on with what an earlier one left? | `origin` |
+//! | which version of which files is it? | [`SCHEMA`], `files` |
+//! | how does JSON hold infinity and NaN? | `number` |
 
+mod files;
 pub mod folder;
 pub mod interval;
 mod number;
 mod origin;
+mod program;
 pub mod row;
 pub mod run;
 pub mod scene;
+mod schema;
 pub mod store;
 pub mod study;
 pub mod study_store;
 pub mod summary;
 
+pub use crate::base::counts::Counts;
 pub use folder::{Kind, ResultFolder};
 pub use interval::Interval;
+pub use program::Program;
 pub use row::Row;
 pub use run::{Machine, RunRecord};
 pub use scene::{ReferenceRecord, SceneRecord, SharedWork};
-pub use summary::{Claim, Counts, Point, Read, Reading, Summary};
-
-/// Version of the files' layout; files of another version are refused, never guessed at.
-pub const SCHEMA: u32 = 2;
+pub use schema::SCHEMA;
+pub use summary::{Claim, Point, Read, Reading, Summary};

@@ -16,7 +16,7 @@ struct Wrapped(#[serde(with = "super::number")] f64);
 
 /// The same for a value per channel.
 pub(super) mod channels {
-    use super::Wrapped;
+    use crate::record::number::Wrapped;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub(in super::super) fn serialize<S: Serializer>(values: &[f64; 3], to: S) -> Result<S::Ok, S::Error> {
@@ -30,7 +30,7 @@ pub(super) mod channels {
 
 /// The same for a list.
 pub(super) mod list {
-    use super::Wrapped;
+    use crate::record::number::Wrapped;
     use serde::{Deserialize, Deserializer, Serializer};
 
     pub(in super::super) fn serialize<S: Serializer>(values: &[f64], to: S) -> Result<S::Ok, S::Error> {

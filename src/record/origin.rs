@@ -1,7 +1,8 @@
 //! May a run go on with what an earlier one left?
 
+use super::program::Program;
+use super::run::{Machine, RunRecord};
 use super::study::StudyRecord;
-use super::{Machine, RunRecord};
 use crate::base::error::{Error, Result};
 use std::path::Path;
 
@@ -9,6 +10,7 @@ use std::path::Path;
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Origin<'a> {
     plan: &'a str,
+    program: Option<&'a Program>,
     version: &'a str,
     revision: &'a str,
     compiler: &'a str,
@@ -18,15 +20,15 @@ pub(super) struct Origin<'a> {
 
 impl RunRecord {
     pub(super) fn origin(&self) -> Origin<'_> {
-        let Self { plan, version, revision, compiler, flags, machine, .. } = self;
-        Origin { plan, version, revision, compiler, flags, machine }
+        let Self { plan, program, version, revision, compiler, flags, machine, .. } = self;
+        Origin { plan, program: program.as_ref(), version, revision, compiler, flags, machine }
     }
 }
 
 impl StudyRecord {
     pub(super) fn origin(&self) -> Origin<'_> {
-        let Self { plan, version, revision, compiler, flags, machine, .. } = self;
-        Origin { plan, version, revision, compiler, flags, machine }
+        let Self { plan, program, version, revision, compiler, flags, machine, .. } = self;
+        Origin { plan, program: program.as_ref(), version, revision, compiler, flags, machine }
     }
 }
 
@@ -37,6 +39,7 @@ pub(super) fn check(folder: &Path, what: &str, command: &str, earlier: &Origin<'
     }
     let parts = [
         ("scenes or options", earlier.plan == own.plan),
+        ("program", earlier.program == own.program),
         ("machine", earlier.machine == own.machine),
         ("version", earlier.version == own.version),
         ("revision", earlier.revision == own.revision),

@@ -1,6 +1,7 @@
 //! What was run, by what, where.
 
-use super::SceneRecord;
+use super::program::Program;
+use super::scene::SceneRecord;
 use serde::{Deserialize, Serialize};
 
 /// Where the figures come from.
@@ -28,6 +29,9 @@ pub struct RunRecord {
     pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,
+    /// The program, where it is not this crate's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<Program>,
     /// The crate's version; empty in records that are older than this field.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub version: String,

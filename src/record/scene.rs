@@ -1,6 +1,7 @@
 //! What is known of a scene: its size, what was measured on it, and against which reference.
 
-use super::{Summary, number};
+use super::number;
+use super::summary::Summary;
 use serde::{Deserialize, Serialize};
 
 /// The image that errors are taken against.

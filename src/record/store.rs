@@ -1,7 +1,10 @@
 //! Where the record and the rows of a comparison lie: files in its folder that survive an interruption.
 
-use super::row::COLUMNS;
-use super::{Row, RunRecord, SCHEMA, origin};
+use super::files::input;
+use super::origin;
+use super::row::{COLUMNS, Row};
+use super::run::RunRecord;
+use super::schema::SCHEMA;
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use serde::de::DeserializeOwned;
@@ -11,16 +14,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// The file of a [`RunRecord`] in its folder.
-pub const RUN_FILE: &str = "run.json";
-/// The file of the [`Row`]s in their folder.
-pub const ROWS_FILE: &str = "runs.csv";
-
-/// `name` with everything but ASCII letters, digits, `.`, `_` and `-` replaced by `-`, safe to name a file with.
-pub fn file_name(name: &str) -> String {
-    let kept = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };
-    name.chars().map(kept).collect()
-}
+pub use super::files::{ROWS_FILE, RUN_FILE, file_name};
 
 /// Writes `run.json` into `folder`, whole or not at all; it is written again as scenes finish.
 pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
@@ -198,8 +192,4 @@ pub(super) fn line<T: AsRef<[u8]>>(fields: &[T]) -> std::io::Result<Vec<u8>> {
     let mut line = csv::Writer::from_writer(Vec::new());
     line.write_record(fields)?;
     line.into_inner().map_err(csv::IntoInnerError::into_error)
-}
-
-pub(super) fn input(path: &Path, line: Option<usize>, field: &str, message: String) -> Error {
-    Error::Input { file: path.to_owned(), line, field: field.to_owned(), message }
 }

@@ -4,7 +4,9 @@
 //! Like the rows of a comparison these are in base units, with the unit in the column's name; the page and the plots
 //! are made again from them alone.
 
-use super::{Machine, number};
+use super::number;
+use super::program::Program;
+use super::run::Machine;
 use serde::{Deserialize, Serialize};
 
 /// Version of the files' layout; files of another version are refused.
@@ -28,6 +30,9 @@ pub struct StudyRecord {
     pub plan: String,
     /// Day of the run, `2026-11-22`.
     pub date: String,
+    /// The program, where it is not this crate's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<Program>,
     /// The crate's version; empty in records that are older than this field.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub version: String,

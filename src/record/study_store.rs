@@ -1,17 +1,18 @@
 //! Where studies lie: a folder with `study.json` and a CSV file a table, whose rows are there as soon as they are
 //! known.
 
-use super::store::{self, input, line};
+use super::files::{file_name, input};
+use super::folder::ResultFolder;
+use super::origin;
+use super::store::{self, line};
 use super::study::{Cell, Cells, Format, PictureRecord, STUDY_SCHEMA, Study, StudyRecord, TableRecord};
-use super::{ResultFolder, origin};
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The file of a [`StudyRecord`] in its folder.
-pub const STUDY_FILE: &str = "study.json";
+pub use super::files::STUDY_FILE;
 
 /// A study being made, in a folder that is its own: what is known is on disk at once, so that an interruption loses
 /// none of it, and a study that is begun again asks what it [`has`](Self::has).
@@ -167,7 +168,7 @@ fn write(folder: &Path, record: &StudyRecord) -> Result<()> {
 }
 
 fn table_file(folder: &Path, table: &TableRecord) -> PathBuf {
-    folder.join(format!("{}.csv", store::file_name(&table.name)))
+    folder.join(format!("{}.csv", file_name(&table.name)))
 }
 
 fn write_table(folder: &Path, table: &TableRecord, rows: &[Cells]) -> Result<()> {

@@ -1,6 +1,8 @@
 //! What is known of a strategy once all its runs are done.
 
-use super::{Interval, number};
+use super::interval::Interval;
+use super::number;
+use crate::base::counts::Counts;
 use serde::{Deserialize, Serialize};
 
 /// What a strategy says about its own estimate.
@@ -49,41 +51,6 @@ impl Claim {
     pub fn is_external(&self) -> bool {
         matches!(self, Self::External { .. })
     }
-}
-
-/// Work counted in a separate pass of the same code; counts carry over between machines, times do not.
-///
-/// Each pick ends in exactly one of the three early outs or in a shadow ray, if its contribution is not zero for
-/// another reason.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Counts {
-    /// Estimates of a receiver: receivers times passes.
-    pub samples: u64,
-    /// Lights that the strategy gave.
-    pub picks: u64,
-    /// Shadow rays.
-    pub shadow_rays: u64,
-    /// Shadow rays that met an occluder.
-    pub blocked: u64,
-    /// Picks dropped because the light sends nothing in that direction (outside a spot's cone).
-    pub zero_intensity: u64,
-    /// Picks dropped because the light is below the receiver's horizon.
-    pub behind_surface: u64,
-    /// Picks dropped because the receiver is behind a one-sided emitter.
-    pub behind_light: u64,
-    /// Nodes of a hierarchy visited to choose.
-    #[serde(default)]
-    pub nodes: u64,
-    /// Lights or nodes weighed at a receiver to choose.
-    #[serde(default)]
-    pub weighed: u64,
-    /// Candidates drawn to choose from.
-    #[serde(default)]
-    pub candidates: u64,
-    /// Shadow rays cast to choose, beside [`shadow_rays`](Self::shadow_rays).
-    #[serde(default)]
-    pub choosing_rays: u64,
 }
 
 /// One budget of a strategy: a point of its curve of error against time.

@@ -1,12 +1,11 @@
 //! Shading a buffer of picks, compiled for what the scene needs.
 
-use super::counts::Counts;
+use crate::base::counts::Counts;
 use crate::scene::light::Kind;
 use crate::scene::needs::Needs;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::{EarlyOut, contribution};
-use crate::strategy::Pick;
-use crate::strategy::erased::PickBuffer;
+use crate::strategy::{Pick, PickBuffer};
 use crate::visibility::stage::Stage;
 use glam::DVec3;
 

@@ -1,13 +1,12 @@
 //! Running passes over all receivers: on one thread for a clock, on all of them for a picture.
 
-use super::counts::Counts;
 use super::film::Film;
 use super::kernel::{Kernel, kernel};
+use crate::base::counts::Counts;
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Block, Frame, PickBuffer, Worker, blocks};
-use crate::strategy::tally::Tally;
+use crate::strategy::{AnySampler, Block, Frame, PickBuffer, Worker, blocks};
 use crate::visibility::stage::Stage;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -66,7 +65,7 @@ impl Plan<'_> {
             let block = self.sampler.begin(self.frame(), passes.clone());
             let mut tiles = Tiles::new(&*block, counting);
             tiles.run(self, kernel, self.receivers, &passes, &mut film.sums);
-            tiles.counts.work.add(tiles.worker.work());
+            tiles.counts += tiles.worker.work();
             counts += tiles.counts;
         }
         counts

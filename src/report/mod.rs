@@ -16,8 +16,10 @@ mod rows;
 mod sheet;
 pub mod splice;
 mod study;
+mod sweep;
 mod table;
 
+pub(crate) use number::{grouped, short};
 pub use page::{page, section};
 pub use plot::plot;
 pub use study::study_text;
@@ -35,7 +37,7 @@ use std::path::{Path, PathBuf};
 /// A derived file: its name within the result folder and its content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Derived {
-    /// `<scene>.md` or `<scene>.svg`, `<study>.md` or `<study>-<plot>.svg`.
+    /// `<scene>.md`, `<scene>.svg` or `<scene>-<parameter>.svg`, `<study>.md` or `<study>-<plot>.svg`.
     pub name: String,
     /// All of it.
     pub text: String,
@@ -53,8 +55,16 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
                 scene.name
             )));
         }
-        files.push(Derived { text: page(run, scene, rows, &plot_name), name: page_name });
+        let swept = sweep::sweeps(scene)?.into_iter().map(|(parameter, text)| {
+            let name = store::file_name(&format!("{}-{parameter}.svg", scene.name));
+            Derived { name, text }
+        });
+        let swept: Vec<Derived> = swept.collect();
+        let mut text = page(run, scene, rows, &plot_name);
+        swept.iter().for_each(|plot| text.push_str(&format!("\n![{0}]({0})\n", plot.name)));
+        files.push(Derived { text, name: page_name });
         files.push(Derived { text: plot(scene)?, name: plot_name });
+        files.extend(swept);
     }
     Ok(files)
 }

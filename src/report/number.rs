@@ -6,7 +6,7 @@ use crate::record::Interval;
 pub(super) const NONE: &str = "–";
 
 /// Three significant digits; an exponent outside `[0.001, 10000)`.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     digits(value, 3)
 }
 
@@ -76,7 +76,8 @@ impl Estimate {
         if let Some(unbounded) = Self::unbounded(interval, short) {
             return unbounded;
         }
-        let off = [mean - low, high - mean];
+        // Freed of skewness, an interval may end short of the figure itself, by rounding or little more.
+        let off = [mean - low, high - mean].map(|off| off.max(0.0));
         let widest = interval.half_width();
         if widest == 0.0 {
             return Self::certain(short(mean));
@@ -173,7 +174,7 @@ pub(super) fn bytes(count: u64) -> String {
 }
 
 /// A whole number with commas between thousands.
-pub(super) fn grouped(count: u64) -> String {
+pub(crate) fn grouped(count: u64) -> String {
     let plain = count.to_string();
     let mut text = String::new();
     for (at, digit) in plain.chars().enumerate() {

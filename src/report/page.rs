@@ -2,7 +2,7 @@
 
 use super::facts::{facts, warnings};
 use super::table::sheets;
-use crate::record::{Row, RunRecord, SceneRecord};
+use crate::record::{Program, Row, RunRecord, SceneRecord};
 use std::fmt::Write;
 
 /// The page of a scene in GitHub's Markdown, with the command and the conditions that it came from.
@@ -16,7 +16,7 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
     let machine = &run.machine;
     _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", run.command);
     _ = writeln!(text, "- date: {}", run.date);
-    _ = writeln!(text, "- revision: {}", built(&run.version, &run.revision));
+    _ = writeln!(text, "- revision: {}", built(run.program.as_ref(), &run.version, &run.revision));
     _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
     _ = writeln!(text, "- compiler: {}; {}", run.compiler, run.flags);
     _ = writeln!(text, "- seed: {}", run.seed);
@@ -37,8 +37,13 @@ pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -
 }
 
 /// What a program was built from; older records know no version.
-pub(super) fn built(version: &str, revision: &str) -> String {
-    if version.is_empty() { revision.to_owned() } else { format!("{revision}, version {version}") }
+pub(super) fn built(program: Option<&Program>, version: &str, revision: &str) -> String {
+    let version = if version.is_empty() { String::new() } else { format!(", version {version}") };
+    let of = |program: &Program| {
+        let Program { name, version, revision } = program;
+        format!("{revision} of `{name}`, version {version}; of citylights ")
+    };
+    format!("{}{revision}{version}", program.map(of).unwrap_or_default())
 }
 
 /// Name, facts, notes, warnings and plot.

@@ -30,7 +30,7 @@ pub(super) fn page(study: &Study) -> String {
     let machine = &record.machine;
     _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", record.command);
     _ = writeln!(text, "- date: {}; {} wall seconds", record.date, short(record.wall_s));
-    _ = writeln!(text, "- revision: {}", built(&record.version, &record.revision));
+    _ = writeln!(text, "- revision: {}", built(record.program.as_ref(), &record.version, &record.revision));
     _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
     _ = writeln!(text, "- compiler: {}; {}", record.compiler, record.flags);
     _ = writeln!(text, "- seed: {}", record.seed);

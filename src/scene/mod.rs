@@ -3,21 +3,11 @@
 //! Coordinates are f32 metres relative to an f64 [`Scene::origin`], +z up. Units are photometric.
 
 pub mod camera;
-pub mod city;
-#[cfg(any(feature = "recipe", feature = "gltf"))]
-pub mod file;
-#[cfg(feature = "gltf")]
-pub mod gltf;
 pub mod influence;
 pub mod light;
 pub mod light_sampling;
-#[cfg(any(feature = "recipe", feature = "gltf"))]
-mod name;
 pub mod needs;
 pub mod receiver;
-#[cfg(feature = "recipe")]
-pub mod recipe;
-pub mod small;
 
 use crate::base::colour::exposure;
 use crate::base::error::{Error, Result};
@@ -94,6 +84,9 @@ pub struct Scene {
     ev100: Option<f32>,
     notes: Vec<String>,
 }
+
+/// Names what a digest is of, and in which order.
+const DIGESTED: &[u8] = b"citylights scene, generator 1\n";
 
 impl Scene {
     /// Checks the parts. Zero-area triangles are dropped, counted in a note; anything not finite or negative is
@@ -263,7 +256,7 @@ impl Scene {
 
     /// Feeds every byte that decides the image to `sink`, in a fixed order; the origin is left out.
     pub fn digest(&self, mut sink: impl FnMut(&[u8])) {
-        sink(format!("citylights scene, generator {}\n", city::GENERATOR_VERSION).as_bytes());
+        sink(DIGESTED);
         sink(bytemuck::cast_slice(&self.lights));
         for surface in &self.surfaces {
             sink(bytemuck::cast_slice(&surface.corners));

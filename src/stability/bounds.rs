@@ -7,7 +7,7 @@ use crate::base::double::Double;
 use crate::base::random::Stream;
 use crate::scene::light::{Light, Shape};
 use crate::scene::receiver::Receiver;
-use crate::strategy::tree::{STEP, centred, relative_variance, steps};
+use crate::tree::{STEP, centred, relative_variance, steps};
 use crate::visibility::offset::Offset;
 use glam::{DVec3, Vec3, Vec3A};
 

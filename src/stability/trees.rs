@@ -8,12 +8,10 @@ use crate::scene::Scene;
 use crate::scene::light::{LightId, Shape};
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
-use crate::scene::small;
 use crate::shading::contribution::contribution;
-use crate::strategy::tally::Uncounted;
-use crate::strategy::tree::Tree;
-use crate::strategy::tree::importance::{Distance, Facing, How, Weighing};
-use crate::strategy::tree::walk::Memory;
+use crate::sources::small;
+use crate::strategy::Uncounted;
+use crate::tree::{Distance, Facing, How, Memory, Tree, Weighing};
 use glam::{DVec3, Vec3};
 
 /// Names the lights.
@@ -22,13 +20,13 @@ const SEED: u64 = 15;
 const LIGHTS: usize = 2000;
 /// Receivers that look at it.
 const RECEIVERS: usize = 120;
-/// All ways to weigh and walk.
+/// All ways to weigh.
 const WAYS: [How; 4] = [
-    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Rms, far: 0.0 },
-    How { weighing: Weighing::Box, distance: Distance::MinMax, facing: Facing::Mean, far: 0.0 },
-    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Mean, far: 0.05 },
+    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Rms },
+    How { weighing: Weighing::Box, distance: Distance::MinMax, facing: Facing::Mean },
+    How { weighing: Weighing::Box, distance: Distance::Mean, facing: Facing::Mean },
     // Takes the absolute cosine at the receiver: it knows no horizon.
-    How { weighing: Weighing::Classic, distance: Distance::Mean, facing: Facing::Mean, far: 0.0 },
+    How { weighing: Weighing::Classic, distance: Distance::Mean, facing: Facing::Mean },
 ];
 /// Those that know the horizon.
 const HORIZONS: usize = 3;
@@ -211,12 +209,13 @@ fn walked<const N: usize>(tree: &Tree<N>, stream: &mut Stream, tally: &mut Tally
         let at = receiver(direction(stream) * magnitude(stream, -3.0, 4.0), direction(stream));
         let mut counts = vec![0.0; LIGHTS];
         tree.expect(&at, 1.0, &mut counts);
-        tree.arrive(&at, &mut memory, &mut Uncounted);
+        tree.walk(&at, &mut memory, &mut Uncounted).arrive();
         let sequence = Sequence::new(RunKey { seed: SEED, run: 0 }, pixel, Points::Random);
         for pass in 0..100 {
             let mut draws = sequence.pass(pass);
             let u = stream.uniform64();
-            if let Some((light, pmf)) = tree.pick(&at, u, &mut draws, &mut memory, &mut Uncounted) {
+            let picked = tree.walk(&at, &mut memory, &mut Uncounted).pick(u, &mut draws);
+            if let Some((light, pmf)) = picked {
                 tally.add_positive(pmf, relative(pmf, f64::from(counts[light as usize])));
             }
         }

@@ -1,6 +1,8 @@
 //! What does choosing cost, in work rather than time? Counts carry over between machines.
 //!
-//! Samplers are compiled twice: with [`Work`], which counts, and with [`Uncounted`], which is nothing at all.
+//! Samplers are compiled twice: with [`Counts`], which counts, and with [`Uncounted`], which is nothing at all.
+
+use crate::base::counts::Counts;
 
 /// Counts the work of choosing.
 pub trait Tally: Default + Send {
@@ -15,9 +17,9 @@ pub trait Tally: Default + Send {
     /// Shadow rays cast to choose, not to shade.
     fn shadow_rays(&mut self, count: u64);
     /// Adds what another tally counted.
-    fn add(&mut self, work: Work);
+    fn add(&mut self, work: Counts);
     /// The counts, if there are any.
-    fn work(&self) -> Work;
+    fn work(&self) -> Counts;
 }
 
 /// Counts nothing: for timed runs.
@@ -36,26 +38,13 @@ impl Tally for Uncounted {
     #[inline(always)]
     fn shadow_rays(&mut self, _count: u64) {}
     #[inline(always)]
-    fn add(&mut self, _work: Work) {}
-    fn work(&self) -> Work {
-        Work::default()
+    fn add(&mut self, _work: Counts) {}
+    fn work(&self) -> Counts {
+        Counts::default()
     }
 }
 
-/// Counted work of choosing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Nodes of a hierarchy visited.
-    pub nodes: u64,
-    /// Lights or nodes weighed at a receiver.
-    pub weighed: u64,
-    /// Candidates drawn to choose from.
-    pub candidates: u64,
-    /// Shadow rays cast to choose, not to shade.
-    pub shadow_rays: u64,
-}
-
-impl Tally for Work {
+impl Tally for Counts {
     const COUNTS: bool = true;
 
     fn nodes(&mut self, count: u64) {
@@ -71,17 +60,14 @@ impl Tally for Work {
     }
 
     fn shadow_rays(&mut self, count: u64) {
-        self.shadow_rays += count;
+        self.choosing_rays += count;
     }
 
-    fn add(&mut self, work: Work) {
-        self.nodes += work.nodes;
-        self.weighed += work.weighed;
-        self.candidates += work.candidates;
-        self.shadow_rays += work.shadow_rays;
+    fn add(&mut self, work: Counts) {
+        *self += work;
     }
 
-    fn work(&self) -> Work {
+    fn work(&self) -> Counts {
         *self
     }
 }

@@ -5,11 +5,14 @@
 //! them.
 
 use super::area::by_area;
+use super::cells::{cells, claim, measured, remark, unbiased};
+use super::columns::{column, interval, plot};
+use super::entry::Entry;
 use super::plane::{closed_form, plane};
 use super::quality::unshadowed;
-use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::session::Session;
+use super::sizes::sizes;
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::errors::Truth;
 use crate::measure::target::{Target, spread};
@@ -17,14 +20,11 @@ use crate::record::study::{Cell, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::render::exact::exact;
 use crate::scene::camera::Camera;
-use crate::scene::city::buildings::Buildings;
-use crate::scene::city::lamps::{LampKind, Lamps};
-use crate::scene::city::{self, City, Grown};
 use crate::scene::influence::{Cutoff, Transfer};
 use crate::scene::receiver::Receiver;
 use crate::scene::{Parts, Scene};
-use crate::strategy::BuildContext;
-use crate::strategy::registry::{self, Configured};
+use crate::sources::city::{self, Buildings, City, Grown, LampKind, Lamps};
+use crate::strategy::{BuildContext, Configured};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
@@ -57,7 +57,8 @@ const OPENNESS: [(&str, &str); 3] = [
 ];
 
 fn run(session: &Session<'_>) -> Result<Study> {
-    let strategies = registry::parse_list(session.options.strategies.as_deref().unwrap_or(STRATEGIES))?;
+    let strategies =
+        session.options.registry.parse_list(session.options.strategies.as_deref().unwrap_or(STRATEGIES))?;
     let biased: Vec<String> = strategies
         .iter()
         .filter(|s| !unbiased(&crate::measure::summary::blank(s)))
@@ -78,13 +79,6 @@ fn run(session: &Session<'_>) -> Result<Study> {
          facades, which stay where they are where the buildings are taken away."
     ))?;
     session.finish(writer)
-}
-
-/// Powers of ten from `fewest` to `most`, and `most` itself where it is less than `fewest`.
-pub(super) fn sizes(fewest: u64, most: u64) -> Vec<u64> {
-    let powers = (0..).map(|power| fewest * 10u64.pow(power)).take_while(|&lights| lights <= most);
-    let powers: Vec<u64> = powers.collect();
-    if powers.is_empty() { vec![most] } else { powers }
 }
 
 fn law_table() -> TableRecord {
@@ -174,7 +168,7 @@ fn in_the_plane(session: &Session<'_>, writer: &mut StudyWriter, strategies: &[C
         session.watch.check()?;
         let slope = if transfer == Transfer::Srgb { 12.92 } else { 1.0 };
         let curve = if transfer == Transfer::Srgb { "srgb" } else { "linear" };
-        let strategy = registry::parse(&format!("influence:cutoff={steps},transfer={curve}"))?;
+        let strategy = session.options.registry.parse(&format!("influence:cutoff={steps},transfer={curve}"))?;
         let lights = stage.scene().lights().len() as u64;
         let key = [("lights", lights.into()), ("strategy", strategy.name().into())];
         if writer.has("law", &key, 1) {

@@ -19,7 +19,7 @@ use crate::scene::light::Light;
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
-use crate::strategy::erased::AnySampler;
+use crate::strategy::AnySampler;
 use crate::visibility::stage::Stage;
 
 /// What a sampler is worth at a receiver.

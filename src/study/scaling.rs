@@ -3,20 +3,21 @@
 //! One recipe at its own density, its extent grown about the same middle: the camera sees the same street, and ever
 //! more lights lie beyond it. Growth is given as the exponent of the power law that fits best.
 
-use super::cutoff::sizes;
+use super::cells::{cells, claim, measured, remark, unbiased};
+use super::columns::{column, interval, plot};
+use super::entry::Entry;
 use super::fit::PowerLaw;
-use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::session::Session;
+use super::sizes::sizes;
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session};
 use crate::base::error::{Error, Result};
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
 use crate::record::Claim;
 use crate::record::study::{Cell, Cells, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
-use crate::scene::file::{self, Overrides};
-use crate::strategy::Role;
-use crate::strategy::registry::Configured;
+use crate::sources::{self, Overrides};
+use crate::strategy::{Configured, Role};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -49,7 +50,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     };
     let sizes = sizes(FEWEST, options.max_lights);
     // Read once before anything is measured: a recipe without a city cannot be grown.
-    let smallest = file::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
+    let smallest = sources::open(path, &Overrides { lights: Some(sizes[0]), ..options.overrides.clone() })?;
     let mut writer = session.open([&smallest], vec![growth(session, &strategies), exponents()])?;
     for lights in sizes {
         at_size(session, &mut writer, path, &strategies, lights)?;
@@ -147,7 +148,7 @@ fn at_size(
     strategies: &[Configured],
     lights: u64,
 ) -> Result<()> {
-    let scene = file::open(path, &Overrides { lights: Some(lights), ..session.options.overrides.clone() })?;
+    let scene = sources::open(path, &Overrides { lights: Some(lights), ..session.options.overrides.clone() })?;
     // Every arrival of the oracle takes as many rays as the truth.
     let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle;
     let strategies: Vec<&Configured> = strategies.iter().filter(within).collect();

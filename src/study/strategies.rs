@@ -5,10 +5,13 @@
 //! (which knows all but that).
 
 use super::area::{ByArea, by_area};
+use super::cells::{cells, claim, measured, remark, unbiased};
+use super::columns::{column, interval, plot};
+use super::entry::Entry;
 use super::quality::{Finding, Quality, quality};
-use super::table::{cells, claim, column, interval, measured, plot, remark, unbiased};
+use super::scenes::told_apart;
+use super::session::Session;
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::measure::figure::{Figure, error};
 use crate::measure::summary::blank;
@@ -17,11 +20,9 @@ use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::record::{Claim, Interval, store};
 use crate::scene::Scene;
-use crate::scene::file;
 use crate::scene::receiver::Receiver;
-use crate::strategy::BuildContext;
-use crate::strategy::erased::AnySampler;
-use crate::strategy::registry::Configured;
+use crate::sources;
+use crate::strategy::{AnySampler, BuildContext, Configured};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
@@ -49,7 +50,6 @@ const VARIANTS: &[&str] = &[
     "light-tree:arity=2",
     "light-tree:arity=4",
     "light-tree:distance=minmax",
-    "light-tree:far=0.02",
     "light-tree:split=0.5",
     "resampled:visibility=on",
     "resampled:from=power,m=16",
@@ -60,7 +60,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let strategies = session.strategies(VARIANTS)?;
     let files = session.scenes(&SCENES);
     let scenes: Vec<Scene> =
-        files.iter().map(|path| file::open(path, &session.options.overrides)).collect::<Result<_>>()?;
+        files.iter().map(|path| sources::open(path, &session.options.overrides)).collect::<Result<_>>()?;
     told_apart(&scenes)?;
     let mut writer =
         session.open(&scenes, scenes.iter().flat_map(|scene| tables(session, scene, &strategies)).collect())?;
@@ -309,14 +309,14 @@ impl Tried {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::registry;
+    use crate::strategy::Registry;
 
     #[test]
     fn every_variant_differs_from_what_is_registered() {
         for text in VARIANTS {
-            let strategy = registry::parse(text).expect(text);
+            let strategy = Registry::standard().parse(text).expect(text);
             assert!(strategy.name().contains(':'), "{text} is {} as it stands", strategy.name());
         }
-        registry::parse_list(&VARIANTS.join(",")).expect("each once");
+        Registry::standard().parse_list(&VARIANTS.join(",")).expect("each once");
     }
 }

@@ -15,8 +15,7 @@ use crate::measure::plan::{Budget, Pilot, RECEIVERS};
 use crate::measure::summary;
 use crate::measure::target::{Target, places};
 use crate::record::{Claim, Interval, Row, Summary};
-use crate::strategy::Role;
-use crate::strategy::registry::Configured;
+use crate::strategy::{Configured, Role};
 
 /// What strategies are tried on, and how.
 #[derive(Clone, Copy)]

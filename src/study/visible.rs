@@ -6,10 +6,13 @@
 //! Whole frames are sampled, set-up on the clock: tables are shared by all that a place holds. Errors are taken at some of
 //! the frame's receivers, since their truth takes a ray for every light.
 
-use super::cutoff::sizes;
-use super::table::{cells, column, interval, measured, plot, remark};
+use super::cells::{cells, measured, remark};
+use super::columns::{column, interval, plot};
+use super::entry::Entry;
+use super::scenes::told_apart;
+use super::session::Session;
+use super::sizes::sizes;
 use super::trial::{Budgets, Tried};
-use super::{Entry, Session, told_apart};
 use crate::base::error::Result;
 use crate::measure::figure::{Figure, error, mean};
 use crate::measure::plan::budgets;
@@ -19,9 +22,8 @@ use crate::record::study::{Cell, ColumnRecord, Format, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::record::{Interval, Row};
 use crate::scene::Scene;
-use crate::scene::file::{self, Overrides};
-use crate::strategy::Role;
-use crate::strategy::registry::{self, Configured};
+use crate::sources::{self, Overrides};
+use crate::strategy::{Configured, Role};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -42,14 +44,12 @@ const FEWEST: u64 = 1_000;
 const PIXELS: usize = 512;
 
 /// From the literature's tree to what each place sees.
-const STEPS: [(&str, &str); 7] = [
+const STEPS: [(&str, &str); 5] = [
     ("classic tree", "light-tree:arity=2,importance=classic,points=random,open=0"),
     ("+ box horizons, 8 wide", "light-tree:points=random,open=0"),
     ("+ low discrepancy", "light-tree:open=0"),
     ("+ opened at the receiver", "light-tree"),
-    ("+ far stop", "light-tree:far=0.02"),
-    ("+ visibility", "visible:far=0.02"),
-    ("visibility, no far stop", "visible"),
+    ("+ visibility", "visible"),
 ];
 /// What the others are measured by: all that choice can do, without what is in between and with it.
 const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity"), ("floor: oracle", "oracle")];
@@ -86,9 +86,9 @@ fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;
     let sizes = sizes(FEWEST, options.max_lights);
     let smallest = sizes[0];
-    let steps = STEPS.iter().chain(&FLOORS).map(|&(step, name)| Ok((step, registry::parse(name)?)));
+    let steps = STEPS.iter().chain(&FLOORS).map(|&(step, name)| Ok((step, options.registry.parse(name)?)));
     let steps: Vec<(&str, Configured)> = steps.collect::<Result<_>>()?;
-    let sweep = registry::parse_list(options.strategies.as_deref().unwrap_or(&SWEEP.join(",")))?;
+    let sweep = options.registry.parse_list(options.strategies.as_deref().unwrap_or(&SWEEP.join(",")))?;
     let mut scenes: Vec<(String, &str, Option<u64>)> =
         sizes.into_iter().map(|lights| (format!("canyon-{lights}"), CANYON, Some(lights))).collect();
     scenes.push(("plaza".into(), PLAZA, None));
@@ -96,10 +96,10 @@ fn run(session: &Session<'_>) -> Result<Study> {
     tables.push(sweep_table(session));
     let swept = session.scenes(&SWEPT);
     // Read before anything is measured: a misspelt name must not cost an hour.
-    let asked: Vec<Scene> = swept.iter().map(|path| file::open(path, &options.overrides)).collect::<Result<_>>()?;
+    let asked: Vec<Scene> = swept.iter().map(|path| sources::open(path, &options.overrides)).collect::<Result<_>>()?;
     told_apart(&asked)?;
     let smallest = Overrides { lights: Some(smallest), ..options.overrides.clone() };
-    let own = [file::open(Path::new(CANYON), &smallest)?, file::open(Path::new(PLAZA), &options.overrides)?];
+    let own = [sources::open(Path::new(CANYON), &smallest)?, sources::open(Path::new(PLAZA), &options.overrides)?];
     let mut writer = session.open(asked.iter().chain(&own), tables)?;
     for (table, path, lights) in &scenes {
         step_by_step(session, &mut writer, table, &open(session, Path::new(path), *lights)?, &steps)?;
@@ -111,7 +111,7 @@ fn run(session: &Session<'_>) -> Result<Study> {
 }
 
 fn open(session: &Session<'_>, path: &Path, lights: Option<u64>) -> Result<Stage> {
-    let scene = file::open(path, &Overrides { lights, ..session.options.overrides.clone() })?;
+    let scene = sources::open(path, &Overrides { lights, ..session.options.overrides.clone() })?;
     Ok(Stage::new(scene, LeaveOut::Yes, Offset::SCALED))
 }
 

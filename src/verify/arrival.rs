@@ -3,12 +3,12 @@
 //! A table that is made from the first receiver that comes along depends on the order of the work, which threads decide.
 //! So neighbours, who would share such a table, are served in several orders by samplers that are built anew for each.
 
-use super::Check;
 use super::calls::{choices, count_different};
+use super::check::Check;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{AnySampler, Frame};
+use crate::strategy::{AnySampler, Frame};
 
 /// The check's name.
 pub(super) const ORDER: &str = "arrival-order";

@@ -2,8 +2,7 @@
 
 use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
-use crate::strategy::Pick;
-use crate::strategy::erased::{AnySampler, Frame, PickBuffer, blocks};
+use crate::strategy::{AnySampler, Frame, Pick, PickBuffer, blocks};
 use std::ops::Range;
 
 /// Shows `take` the picks of each call: the receiver's place in the list, the pass, and what was picked. A receiver's

@@ -2,7 +2,7 @@
 //!
 //! What it leaves running behind a call, and what threads of its own do, is on no worker's clock, but on the process's.
 
-use super::Check;
+use super::check::Check;
 
 /// The check's name.
 const CHARGED: &str = "charged";

@@ -1,29 +1,27 @@
 //! Does a sampler keep the promises that hold exactly?
 
 use super::calls::{self, count_different};
+use super::check::Check;
+use super::impossible::{IDS, Impossible, VALID};
 use super::observe::{Site, freedom};
+use super::options::Options;
+use super::spread::spread;
+use super::subject::Subject;
 use super::truth::grey;
 use super::weights::ROUNDING;
-use super::{Check, Options, Subject, spread};
 use crate::base::statistics::{sidak, student_quantile};
 use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
-use crate::strategy::Pick;
-use crate::strategy::erased::{Frame, PickBuffer};
+use crate::strategy::{Frame, Pick, PickBuffer};
 use glam::DVec3;
 
 /// The checks' names.
-const IDS: &str = "ids";
-const VALID: &str = "weights-finite";
 const SEED: &str = "same-seed";
 const THREADS: &str = "threads";
 const REPLAY: &str = "replay";
 const ALLOCATION: &str = "allocation";
-/// Where one of these fails, nothing else can be looked at.
-pub(super) const POSSIBLE: [&str; 2] = [IDS, VALID];
 /// The checks that hold exactly.
 pub(super) const NAMES: [&str; 7] = [IDS, VALID, SEED, THREADS, REPLAY, ALLOCATION, RECIPROCAL];
 pub(super) const PICKS: &str = "picks";
@@ -38,65 +36,12 @@ const PASSES: u32 = 8;
 /// Passes of the films that are compared with one another.
 const FILM_PASSES: u32 = 3;
 
-/// How many picks name no light of a scene with so many.
-pub fn picks_in_range(picks: &[Pick], lights: usize) -> usize {
-    picks.iter().filter(|pick| pick.light as usize >= lights).count()
-}
-
-/// How many picks have a weight that is negative or not finite.
-pub fn picks_valid(picks: &[Pick]) -> usize {
-    picks.iter().filter(|pick| !(pick.weight.is_finite() && pick.weight >= 0.0)).count()
-}
-
-/// Picks that no right sampler makes: of no light, or with a weight that none can have.
-#[derive(Clone, Default)]
-pub(super) struct Impossible {
-    picks: u64,
-    ids: u64,
-    weights: u64,
-    /// Pixel and light of the first of each.
-    first_id: Option<(u32, LightId)>,
-    first_weight: Option<(u32, LightId)>,
-}
-
-impl Impossible {
-    /// Whether there are any.
-    pub(super) fn any(&self) -> bool {
-        self.ids + self.weights > 0
-    }
-
-    /// Counts a pick at a pixel; gives whether it is possible.
-    pub(super) fn look(&mut self, pick: &Pick, pixel: u32, lights: usize) -> bool {
-        let picks = std::slice::from_ref(pick);
-        let (beyond, invalid) = (picks_in_range(picks, lights) > 0, picks_valid(picks) > 0);
-        self.picks += 1;
-        if beyond {
-            self.ids += 1;
-            self.first_id.get_or_insert((pixel, pick.light));
-        }
-        if invalid {
-            self.weights += 1;
-            self.first_weight.get_or_insert((pixel, pick.light));
-        }
-        !beyond && !invalid
-    }
-
-    /// Adds what was found elsewhere.
-    pub(super) fn add(&mut self, other: &Self) {
-        self.picks += other.picks;
-        self.ids += other.ids;
-        self.weights += other.weights;
-        self.first_id = self.first_id.or(other.first_id);
-        self.first_weight = self.first_weight.or(other.first_weight);
-    }
-}
-
 /// The first passes at each receiver, and at those that [`threads`] renders.
-pub(super) fn impossible(subject: &Subject<'_, '_>) -> Impossible {
-    let (all, rendered) = (subject.stage().receivers(), rendered(subject));
-    let lights = subject.stage().scene().lights().len();
+pub(super) fn impossible(subject: &Subject<'_>) -> Impossible {
+    let (all, rendered) = (subject.stage.receivers(), rendered(subject));
+    let lights = subject.stage.scene().lights().len();
     let mut found = Impossible::default();
-    for (frame, receivers, passes) in [(all, subject.receivers(), PASSES), (&rendered, &rendered, FILM_PASSES)] {
+    for (frame, receivers, passes) in [(all, subject.receivers, PASSES), (&rendered, &rendered, FILM_PASSES)] {
         calls::visit(subject.sampler, Frame::new(frame, subject.key(0)), receivers, 0..passes, false, |i, _, call| {
             call.iter().for_each(|pick| {
                 found.look(pick, receivers[i].pixel, lights);
@@ -106,36 +51,23 @@ pub(super) fn impossible(subject: &Subject<'_, '_>) -> Impossible {
     found
 }
 
-/// The checks that nothing else makes sense without.
-pub(super) fn possible(found: &Impossible) -> [Check; 2] {
-    let Impossible { picks, ids, weights, first_id, first_weight } = *found;
-    let check = |name, count: u64, first: Option<(u32, LightId)>, what: &str| {
-        let detail = format!("{what}, of {picks} picks; the first is named");
-        Check::new(name, count as f64, 0.0, detail).at(first.map(|at| at.0), first.map(|at| at.1))
-    };
-    [
-        check(IDS, ids, first_id, "ids beyond the table of lights"),
-        check(VALID, weights, first_weight, "weights below 0 or not finite"),
-    ]
-}
-
 /// The checks that need no statistics.
-pub(super) fn exact(subject: &Subject<'_, '_>) -> Vec<Check> {
+pub(super) fn exact(subject: &Subject<'_>) -> Vec<Check> {
     let mut checks = vec![same_seed(subject), threads(subject), replay(subject)];
-    if let Some(counter) = subject.verifier.options.allocations {
+    if let Some(counter) = subject.options.allocations {
         checks.push(allocation(subject, counter));
     }
     checks
 }
 
 /// The receivers that films are made of: more than one tile of 64.
-fn rendered(subject: &Subject<'_, '_>) -> Vec<Receiver> {
-    spread(subject.stage().receivers(), 80)
+fn rendered(subject: &Subject<'_>) -> Vec<Receiver> {
+    spread(subject.stage.receivers(), 80)
 }
 
 /// The same picks again from a new worker, from one that comes the other way round, and pass by pass.
-fn same_seed(subject: &Subject<'_, '_>) -> Check {
-    let (frame, receivers) = (subject.stage().receivers(), subject.receivers());
+fn same_seed(subject: &Subject<'_>) -> Check {
+    let (frame, receivers) = (subject.stage.receivers(), subject.receivers);
     let first = subject.calls(frame, receivers, 0..PASSES);
     let mut differ = count_different(&first, &subject.calls(frame, receivers, 0..PASSES));
     let backwards: Vec<Receiver> = receivers.iter().rev().copied().collect();
@@ -147,15 +79,15 @@ fn same_seed(subject: &Subject<'_, '_>) -> Check {
         let among: Vec<Vec<Pick>> = first.iter().skip(pass as usize).step_by(PASSES as usize).cloned().collect();
         differ += count_different(&among, &alone);
     }
-    let seed = subject.verifier.options.seed;
+    let seed = subject.options.seed;
     let detail = format!("calls that differ when repeated, reversed or cut into passes; seed {seed}");
     Check::new(SEED, differ as f64, 0.0, detail)
 }
 
 /// One thread, two threads and a split of the passes: the same bytes.
-fn threads(subject: &Subject<'_, '_>) -> Check {
+fn threads(subject: &Subject<'_>) -> Check {
     let receivers = rendered(subject);
-    let plan = Plan { stage: subject.stage(), receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
+    let plan = Plan { stage: subject.stage, receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
     let film = |run: &dyn Fn(&mut Film)| {
         let mut film = Film::new(receivers.len());
         run(&mut film);
@@ -176,8 +108,8 @@ fn threads(subject: &Subject<'_, '_>) -> Check {
 }
 
 /// The renderer's film against the same picks shaded one by one, every kind compiled in and every ray cast.
-fn replay(subject: &Subject<'_, '_>) -> Check {
-    let (stage, receivers) = (subject.stage(), subject.receivers());
+fn replay(subject: &Subject<'_>) -> Check {
+    let (stage, receivers) = (subject.stage, subject.receivers);
     let mut film = Film::new(receivers.len());
     Plan { stage, receivers, sampler: subject.sampler, key: subject.key(0) }.run(PASSES, &mut film);
     // The film's frame is its receivers.
@@ -198,10 +130,10 @@ fn replay(subject: &Subject<'_, '_>) -> Check {
 }
 
 /// Allocations of a warm worker, by a counter of this thread's allocations.
-fn allocation(subject: &Subject<'_, '_>, counter: fn() -> u64) -> Check {
+fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
     let passes = 0..PASSES.min(subject.sampler.most_passes());
-    let receivers = subject.receivers();
-    let block = subject.sampler.begin(Frame::new(subject.stage().receivers(), subject.key(0)), passes.clone());
+    let receivers = subject.receivers;
+    let block = subject.sampler.begin(Frame::new(subject.stage.receivers(), subject.key(0)), passes.clone());
     let found = allocations(counter, || {
         let (mut worker, mut buffer, passes) = (block.worker(false), PickBuffer::default(), passes.clone());
         move || worker.fill(receivers, passes.clone(), true, &mut buffer)

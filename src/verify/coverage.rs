@@ -1,6 +1,6 @@
 //! Can every light that adds something be chosen?
 
-use super::Check;
+use super::check::Check;
 use super::observe::Site;
 use crate::base::colour::luminance;
 use crate::scene::Scene;

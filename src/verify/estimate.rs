@@ -1,8 +1,9 @@
 //! Is the mean estimate the exact sum?
 
+use super::check::Check;
 use super::observe::{Batch, Site, freedom};
+use super::options::Options;
 use super::weights::ROUNDING;
-use super::{Check, Options};
 use crate::base::statistics::{Moments, sidak, skewness, student_p, student_quantile, unskewed};
 
 /// The checks' names.

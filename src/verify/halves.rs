@@ -2,7 +2,7 @@
 //!
 //! Their difference says how noisy the reference is: halves that share their numbers claim that it is free of noise.
 
-use super::Check;
+use super::check::Check;
 use crate::render::exact::Exact;
 
 /// The check's name.

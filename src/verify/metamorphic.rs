@@ -8,20 +8,23 @@
 //!
 //! The table of lights is whole on both sides: nothing is left out.
 
+use super::check::Check;
 use super::estimate::{Distance, surprise};
-use super::{Check, Options, Subject, Verifier, observe, spread};
+use super::impossible::{picks_in_range, picks_valid};
+use super::observe;
+use super::options::Options;
+use super::spread::spread;
+use super::subject::Subject;
+use super::verifier::Verifier;
 use crate::base::error::Result;
 use crate::base::random::hash;
 use crate::base::statistics::{sidak, student_quantile};
 use crate::scene::light::Shape;
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
-use crate::scene::small::{cuboid, point};
 use crate::scene::{Parts, Scene};
-use crate::strategy::erased::AnySampler;
-use crate::strategy::registry::Configured;
-use crate::strategy::{BuildContext, Claim};
-use crate::verify::contract::{picks_in_range, picks_valid};
+use crate::sources::small::{cuboid, point};
+use crate::strategy::{AnySampler, BuildContext, Claim, Configured};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use glam::{DQuat, DVec3, Vec3};
@@ -148,9 +151,8 @@ impl<'a> Metamorphic<'a> {
         let build = |verifier: &Verifier<'_>| strategy.build(BuildContext { stage: verifier.stage, seed });
         let base = build(&self.whole)?;
         let samplers = self.changed.iter().map(build).collect::<Result<Vec<_>>>()?;
-        let subjects =
-            || self.changed.iter().zip(&samplers).map(|(verifier, sampler)| Subject { verifier, sampler: &**sampler });
-        let mut checks = vec![valid(subjects())];
+        let pairs = || self.changed.iter().zip(&samplers);
+        let mut checks = vec![valid(pairs().map(|(verifier, sampler)| verifier.subject(&**sampler)))];
         if strategy.info().claim != Claim::Unbiased || !checks[0].passed {
             return Ok(checks);
         }
@@ -158,10 +160,10 @@ impl<'a> Metamorphic<'a> {
         if strategy.scale_free() {
             checks.extend(self.counts(&*base, &samplers));
         }
-        for ((name, ..), subject) in CHANGES.iter().zip(subjects()) {
-            let mut check = estimate(name, &subject);
+        for ((name, ..), (verifier, sampler)) in CHANGES.iter().zip(pairs()) {
+            let mut check = estimate(name, &verifier.subject(&**sampler));
             if !check.passed {
-                check = estimate(name, &Subject { verifier: subject.verifier.second(), ..subject });
+                check = estimate(name, &verifier.second().subject(&**sampler));
             }
             checks.push(check);
         }
@@ -196,22 +198,22 @@ impl<'a> Metamorphic<'a> {
 }
 
 /// Picks on every copy are lights of the table with weights that are finite and 0 or more.
-fn valid<'s, 'v: 's>(subjects: impl Iterator<Item = Subject<'s, 'v>>) -> Check {
+fn valid<'v>(subjects: impl Iterator<Item = Subject<'v>>) -> Check {
     let (mut wrong, mut all) = (0, 0);
     for subject in subjects {
-        let picks = subject.calls(subject.stage().receivers(), subject.receivers(), 0..8).concat();
-        wrong += picks_in_range(&picks, subject.stage().scene().lights().len()) + picks_valid(&picks);
+        let picks = subject.calls(subject.stage.receivers(), subject.receivers, 0..8).concat();
+        wrong += picks_in_range(&picks, subject.stage.scene().lights().len()) + picks_valid(&picks);
         all += picks.len();
     }
     Check::new(VALID, wrong as f64, 0.0, format!("ids beyond the table and impossible weights, of {all} picks"))
 }
 
 /// The mean estimate on a copy is the truth there.
-fn estimate(name: &'static str, subject: &Subject<'_, '_>) -> Check {
+fn estimate(name: &'static str, subject: &Subject<'_>) -> Check {
     let sites = observe::sites(subject);
     let distance = Distance::new(&sites);
     let (worst, pixel, off) = distance.worst();
-    let options = &subject.verifier.options;
+    let options = subject.options;
     let limit = surprise(sidak(options.level, sites.len() + 1));
     let (mean, tested) = (distance.of_mean(), distance.tested());
     let detail = format!(

@@ -4,14 +4,15 @@
 //! to do with one another. Where a sampler cannot tell how often it picks a light, a run of its own, before the others,
 //! shows which lights are seen often enough to be tested: a choice that does not depend on the draws it is tested by.
 
-use super::Subject;
-use super::contract::Impossible;
-use super::pool::{Bin, Pool, Steady};
+use super::impossible::Impossible;
+use super::pool::{Bin, Pool};
+use super::steady::{Steady, toss};
+use super::subject::Subject;
 use super::truth::{Truth, grey};
 use crate::base::statistics::{Moments, skewness, unskewed};
 use crate::render::exact::shadowed;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::{Frame, PickBuffer, blocks};
+use crate::strategy::{Frame, PickBuffer, blocks};
 use std::ops::Range;
 
 /// Batches that a t test needs at least; a sampler that takes thousands of lights in a call leaves little to chance.
@@ -163,8 +164,8 @@ impl Site<'_> {
         variance
     }
 
-    fn take(&mut self, subject: &Subject<'_, '_>, buffer: &PickBuffer, rays: &mut u64) {
-        let stage = subject.stage();
+    fn take(&mut self, subject: &Subject<'_>, buffer: &PickBuffer, rays: &mut u64) {
+        let stage = subject.stage;
         let lights = stage.scene().lights();
         let batch = &mut self.current;
         for pick in buffer.calls().flatten() {
@@ -211,16 +212,10 @@ impl Site<'_> {
     }
 }
 
-/// Variance of a toss between the two whole numbers around `mean`.
-pub(super) fn toss(mean: f64) -> f64 {
-    let part = mean.fract();
-    part * (1.0 - part)
-}
-
 /// Draws at every receiver of the subject.
-pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
-    let options = &subject.verifier.options;
-    let (frame, receivers) = (subject.stage().receivers(), subject.receivers());
+pub(super) fn sites<'a>(subject: &Subject<'a>) -> Vec<Site<'a>> {
+    let options = subject.options;
+    let (frame, receivers) = (subject.stage.receivers(), subject.receivers);
     let first = subject.calls(frame, receivers, 0..FIRST);
     let picks = |calls: &[Vec<_>]| calls.iter().map(Vec::len).sum::<usize>() as f64 / f64::from(FIRST);
     let per_call: Vec<f64> = first.chunks(FIRST as usize).map(|calls| picks(calls).max(1.0)).collect();
@@ -234,8 +229,7 @@ pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
     let calls: Vec<u32> =
         per_call.iter().map(|a_call| ((draws / a_call / f64::from(batches)).ceil() as u32).max(1)).collect();
     let counts = counts(subject, &calls.iter().map(|calls| calls * batches).collect::<Vec<_>>());
-    let verifier = subject.verifier;
-    let mut sites: Vec<Site<'a>> = (verifier.receivers.iter().zip(&verifier.truths))
+    let mut sites: Vec<Site<'a>> = (subject.receivers.iter().zip(subject.truths))
         .zip(calls.iter().zip(counts))
         .map(|((at, truth), (&calls, Counts { counts, told }))| {
             let draws = f64::from(calls) * f64::from(batches);
@@ -265,13 +259,13 @@ pub(super) fn sites<'a>(subject: &Subject<'a, '_>) -> Vec<Site<'a>> {
 }
 
 /// One independent run: `calls` passes at each receiver, a buffer of picks at a time.
-fn run(subject: &Subject<'_, '_>, run: u32, calls: &[u32], mut take: impl FnMut(usize, &PickBuffer)) {
-    let frame = Frame::new(subject.stage().receivers(), subject.key(run));
+fn run(subject: &Subject<'_>, run: u32, calls: &[u32], mut take: impl FnMut(usize, &PickBuffer)) {
+    let frame = Frame::new(subject.stage.receivers(), subject.key(run));
     let mut buffer = PickBuffer::default();
     for block in blocks(subject.sampler, 0..calls.iter().copied().max().unwrap_or(0)) {
         let begun = subject.sampler.begin(frame, block.clone());
         let mut worker = begun.worker(false);
-        for (site, (at, &calls)) in subject.receivers().iter().zip(calls).enumerate() {
+        for (site, (at, &calls)) in subject.receivers.iter().zip(calls).enumerate() {
             // Thousands of calls at once would not fit.
             let mut next = block.start;
             while next < block.end.min(calls) {
@@ -290,9 +284,9 @@ struct Counts {
     told: bool,
 }
 
-fn counts(subject: &Subject<'_, '_>, calls: &[u32]) -> Vec<Counts> {
-    let lights = subject.stage().scene().lights().len();
-    let mut counts: Vec<Counts> = (subject.receivers().iter())
+fn counts(subject: &Subject<'_>, calls: &[u32]) -> Vec<Counts> {
+    let lights = subject.stage.scene().lights().len();
+    let mut counts: Vec<Counts> = (subject.receivers.iter())
         .map(|at| {
             let mut counts = vec![0.0; lights];
             let told = subject.sampler.expected_counts(at, &mut counts);
@@ -312,7 +306,7 @@ fn counts(subject: &Subject<'_, '_>, calls: &[u32]) -> Vec<Counts> {
                 }
             }
         });
-        let sites = counts.iter_mut().zip(calls).zip(&subject.verifier.truths);
+        let sites = counts.iter_mut().zip(calls).zip(subject.truths);
         for ((Counts { counts, .. }, &calls), truth) in sites.filter(|((counts, _), _)| !counts.told) {
             let least = if truth.lit() < LIT { f32::INFINITY } else { SEEN };
             counts.iter_mut().for_each(|count| *count = if *count < least { 0.0 } else { *count / calls as f32 });

@@ -4,9 +4,10 @@
 //! from pass to pass, since it lists its lights or has no choice, leaves nothing to chance and may repeat itself.
 
 use super::calls::{choices, count_different};
-use super::{Check, Subject};
+use super::check::Check;
+use super::subject::Subject;
 use crate::base::random::RunKey;
-use crate::strategy::erased::Frame;
+use crate::strategy::Frame;
 
 /// The check's name.
 pub(super) const ANOTHER: &str = "another-seed";
@@ -21,9 +22,9 @@ const PASSES: [u32; 2] = [8, 64];
 const SURE: f64 = 1e-9;
 
 /// Runs that are the same, pick for pick, in all passes at all receivers.
-pub(super) fn another(subject: &Subject<'_, '_>) -> Check {
-    let seed = subject.verifier.options.seed;
-    let frame = subject.receivers();
+pub(super) fn another(subject: &Subject<'_>) -> Check {
+    let seed = subject.options.seed;
+    let frame = subject.receivers;
     for passes in PASSES {
         let picks = |key| choices(subject.sampler, Frame::new(frame, key), frame, 0..passes);
         let first = picks(subject.key(0));

@@ -1,8 +1,9 @@
 //! Do the weights of each light sum to 1 on average?
 
+use super::check::Check;
 use super::observe::{PLENTY, Site, freedom};
+use super::options::Options;
 use super::truth::REPEATS;
-use super::{Check, Options};
 use crate::base::statistics::{sidak, student_quantile};
 
 /// The checks' names.

@@ -3,8 +3,8 @@
 use base64::Engine;
 use citylights::base::error::Result;
 use citylights::scene::Scene;
-use citylights::scene::file::Overrides;
-use citylights::scene::gltf::parse;
+use citylights::sources::Overrides;
+use citylights::sources::gltf::parse;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -11,11 +11,9 @@ use citylights::base::random::{RunKey, Stream};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::receiver::Receiver;
-pub use citylights::scene::small::{ALBEDO, camera, cuboid, ground, moon, panel, point, sixteen, spot};
 use citylights::scene::{Parts, Scene};
-use citylights::strategy::BuildContext;
-use citylights::strategy::erased::AnySampler;
-use citylights::strategy::registry;
+pub use citylights::sources::small::{ALBEDO, camera, cuboid, ground, moon, panel, point, sixteen, spot};
+use citylights::strategy::{AnySampler, BuildContext, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
@@ -36,7 +34,7 @@ pub fn receiver(position: Vec3, normal: Vec3) -> Receiver {
 
 /// A sampler of a registered strategy.
 pub fn sampler(strategy: &str, stage: &Stage) -> Box<dyn AnySampler> {
-    registry::parse(strategy).expect(strategy).build(BuildContext { stage, seed: 1 }).expect(strategy)
+    Registry::standard().parse(strategy).expect(strategy).build(BuildContext { stage, seed: 1 }).expect(strategy)
 }
 
 /// Expected counts of a registered strategy at a receiver.

@@ -3,8 +3,8 @@
 use super::gltf::File;
 use assert_cmd::Command;
 use citylights::base::error::Error;
-use citylights::scene::file::Overrides;
-use citylights::scene::gltf::parse;
+use citylights::sources::Overrides;
+use citylights::sources::gltf::parse;
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -2,7 +2,8 @@
 //!
 //! Each is a node that bears the name of its group. Equal lights share one entry, whatever their place.
 
-use super::{factored, place, rotation, turned};
+use super::factored::factored;
+use super::place::{place, rotation, turned};
 use crate::base::error::Result;
 use crate::export::meshes::groups;
 use crate::scene::Scene;

@@ -2,7 +2,8 @@
 //!
 //! Metallic 0, roughness 1 and specular 0 make each Lambertian elsewhere.
 
-use super::{extras, factored};
+use super::extras::extras;
+use super::factored::factored;
 use crate::base::error::Result;
 use crate::scene::Material;
 use ::gltf::json::extensions::material::{

@@ -7,7 +7,8 @@
 //! Blender's importer looks at all objects for each primitive. So cells grow with the scene until there are few
 //! meshes, and meshes come before the lights.
 
-use super::{materials, place, turned};
+use super::materials;
+use super::place::{place, turned};
 use crate::base::error::Result;
 use crate::export::meshes::{Corners, groups};
 use crate::scene::Scene;

@@ -2,7 +2,7 @@
 
 use super::channels::{Chosen, choose};
 use crate::base::error::{Error, Result};
-use crate::image::{MOST_PIXELS, Picture};
+use crate::image::picture::{MOST_PIXELS, Picture};
 use ::exr::block::chunk::TileCoordinates;
 use ::exr::block::reader::ChunksReader;
 use ::exr::block::{BlockIndex, UncompressedBlock};

@@ -1,7 +1,7 @@
 //! A picture as an EXR file.
 
 use crate::base::error::{Error, Result};
-use crate::image::Picture;
+use crate::image::picture::Picture;
 use ::exr::meta::attribute::{Chromaticities, Text};
 use ::exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
 use std::io::Cursor;

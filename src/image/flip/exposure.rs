@@ -1,6 +1,6 @@
 //! FLIP of high dynamic range: the largest difference at any exposure that shows the reference.
 
-use super::ldr;
+use super::ldr::ldr;
 use crate::base::colour::luminance;
 use glam::{DVec3, Vec3};
 

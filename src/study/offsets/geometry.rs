@@ -5,8 +5,8 @@ use crate::base::random::Stream;
 use crate::scene::camera::Camera;
 use crate::scene::light::Shape;
 use crate::scene::receiver::Receiver;
-use crate::scene::small::{ALBEDO, cuboid, panel, point};
-use crate::scene::{Material, Parts, Scene, Surface, small};
+use crate::scene::{Material, Parts, Scene, Surface};
+use crate::sources::small::{self, ALBEDO, cuboid, panel, point};
 use glam::{DVec3, Vec3};
 
 /// What a scene tries.

@@ -2,7 +2,6 @@
 //!
 //! Every contender looks at each receiver alone, so that receivers from all over a frame stand for it.
 
-use super::super::Session;
 use crate::base::error::{Error, Result};
 use crate::base::interval::Tail;
 use crate::base::random::RunKey;
@@ -13,7 +12,8 @@ use crate::record::Interval;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::erased::AnySampler;
+use crate::strategy::AnySampler;
+use crate::study::session::Session;
 use crate::visibility::stage::Stage;
 
 /// Receivers that contenders are measured at.

@@ -1,33 +1,21 @@
 //! How many shadow rays does a soft shadow take, where should they go, and how should their points be drawn?
+//!
+//! | question | where |
+//! |---|---|
+//! | which tables does the study have? | `run` |
+//! | how does the error of a soft shadow fall with its rays? | `rays` |
+//! | which lights should the rays go to? | `shares` |
+//! | how should points on a light be drawn? | `ways` |
+//! | which scenes show soft shadows? | `scene` |
+//! | how far off are samplers, one beside the other? | `measure` |
+//! | what does a shadow look like? | `picture` |
 
 mod measure;
 mod picture;
 mod rays;
+mod run;
 mod scene;
 mod shares;
 mod ways;
 
-use super::{Entry, Session};
-use crate::base::error::Result;
-use crate::record::study::Study;
-
-pub(super) const ENTRY: Entry = Entry {
-    name: "soft-shadows",
-    question: "How many shadow rays does a soft shadow take, which lights should they go to, and how should their points be drawn?",
-    run,
-};
-
-fn run(session: &Session<'_>) -> Result<Study> {
-    let mut writer = session
-        .open([], vec![rays::table(session), rays::laws(), shares::table(session), ways::table(), ways::by_size()])?;
-    rays::run(session, &mut writer)?;
-    shares::run(session, &mut writer)?;
-    ways::run(session, &mut writer)?;
-    let options = session.options;
-    writer.note(format!(
-        "Errors over {} receivers in {} independent runs; all contenders of a table in each run.",
-        session.pixels(measure::PIXELS),
-        options.repeats
-    ))?;
-    session.finish(writer)
-}
+pub(super) use run::ENTRY;

@@ -13,12 +13,11 @@ use crate::record::study_store::StudyWriter;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::render::picture::picture;
-use crate::strategy::BuildContext;
-use crate::strategy::erased::AnySampler;
-use crate::strategy::registry::parse;
-use crate::study::Session;
+use crate::strategy::{AnySampler, BuildContext};
+use crate::study::cells::cells;
+use crate::study::columns::{column, interval, plot};
 use crate::study::fit::PowerLaw;
-use crate::study::table::{cells, column, interval, plot};
+use crate::study::session::Session;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
@@ -107,7 +106,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
         let mut samplers = Vec::new();
         for points in POINTS {
             for rays in RAYS {
-                let strategy = parse(&format!("all:points={points}"))?;
+                let strategy = session.options.registry.parse(&format!("all:points={points}"))?;
                 let sampler = strategy.build(BuildContext { stage: &stage, seed: session.options.seed })?;
                 samplers.push((points, rays, sampler));
             }

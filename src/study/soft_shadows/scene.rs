@@ -3,9 +3,9 @@
 use crate::base::error::Result;
 use crate::scene::camera::Camera;
 use crate::scene::light::Shape;
-use crate::scene::small::{cuboid, ground, panel};
 use crate::scene::{Material, Parts, Scene, Surface};
-use crate::study::Session;
+use crate::sources::small::{cuboid, ground, panel};
+use crate::study::session::Session;
 use glam::Vec3;
 
 /// Sizes of the one light: what the lecture calls them, and the side of a square in m.

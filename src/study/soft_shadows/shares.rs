@@ -12,11 +12,11 @@ use crate::render::exact::shadowed;
 use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
+use crate::strategies::allocate::Sampler;
 use crate::strategy::BuildContext;
-use crate::strategy::allocate::Sampler;
-use crate::strategy::registry::parse;
-use crate::study::Session;
-use crate::study::table::{cells, column, interval, plot};
+use crate::study::cells::cells;
+use crate::study::columns::{column, interval, plot};
+use crate::study::session::Session;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use rayon::prelude::*;
@@ -69,7 +69,11 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
     // What fixed counts spend: a point on each triangle that can add anything.
     let facing = receivers.iter().map(|at| triangles(&stage).filter(|light| importance(light, at) > 0.0).count());
     let each = facing.sum::<usize>() as f64 / receivers.len().max(1) as f64;
-    let fixed = parse("all:points=random")?.build(BuildContext { stage: &stage, seed: session.options.seed })?;
+    let fixed = session
+        .options
+        .registry
+        .parse("all:points=random")?
+        .build(BuildContext { stage: &stage, seed: session.options.seed })?;
     let shared: Vec<[Sampler; 2]> = COUNTS
         .into_iter()
         .map(|count| {

@@ -14,9 +14,9 @@ use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
 use crate::strategy::BuildContext;
-use crate::strategy::registry::parse;
-use crate::study::Session;
-use crate::study::table::{cells, column, interval, plot};
+use crate::study::cells::cells;
+use crate::study::columns::{column, interval, plot};
+use crate::study::session::Session;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use glam::Vec3;
@@ -125,7 +125,7 @@ pub(super) fn run(session: &Session<'_>, writer: &mut StudyWriter) -> Result<()>
             .collect::<Result<Vec<_>>>()?;
         let target = Target::of(&stages[0], spread(stages[0].receivers(), session.pixels(PIXELS)));
         let reference = Reference::compute(&target, 1e-6, &session.options.cache, session.watch)?;
-        let strategy = parse("all")?;
+        let strategy = session.options.registry.parse("all")?;
         let samplers = stages
             .iter()
             .map(|stage| strategy.build(BuildContext { stage, seed: session.options.seed }))

@@ -1,8 +1,8 @@
 //! What do points on a triangle add up to, and is any triangle given up?
 
-use super::Path;
 use super::geometry::Geometry;
 use super::light::{irradiance, is_above, looks_small, surely_adds};
+use super::path::Path;
 use crate::base::random::Stream;
 use crate::scene::light::LightId;
 use crate::scene::light_sampling::LightSampling;

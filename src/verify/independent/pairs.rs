@@ -2,7 +2,7 @@
 
 use super::geometry::{Geometry, Place};
 use super::light::{Arriving, unshadowed};
-use super::{PAIRS, Path};
+use super::path::Path;
 use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::light_sampling::LightSampling;
@@ -13,6 +13,9 @@ use glam::DVec3;
 /// The checks' names.
 pub(super) const CONTRIBUTION: &str = "contribution";
 pub(super) const VISIBILITY: &str = "visibility";
+
+/// Pairs of a receiver and a light that are looked at.
+const PAIRS: usize = 2_000;
 
 /// How many pairs of a kind of light are tried for each that is wanted: of few does anything arrive.
 const TRIES: usize = 200;

@@ -1,8 +1,8 @@
 //! Is the exact image the sum over all lights?
 
-use super::Path;
 use super::geometry::{Geometry, Place};
 use super::light::{surely_adds, unshadowed};
+use super::path::Path;
 use crate::base::random::Stream;
 use crate::base::statistics::student_quantile;
 use crate::scene::light::{Kind, Light};

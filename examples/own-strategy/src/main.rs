@@ -1,0 +1,3 @@
+fn main() -> std::process::ExitCode {
+    citylights::cli::run_with(&systematic::registry(), &citylights::program!())
+}

@@ -1,0 +1,63 @@
+//! What can a scene be exported to, and how are the files of each named?
+
+use crate::base::error::{Error, Result};
+use crate::base::names;
+use std::path::Path;
+
+/// What a scene can be exported to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// glTF 2.0: `.glb`, or `.gltf` with its buffer embedded; for Blender and most others.
+    Gltf,
+    /// pbrt-v4: one `.pbrt` file.
+    Pbrt,
+    /// Mitsuba 3: an `.xml` file, and beside it a folder of the same name with meshes and the cones of spots.
+    Mitsuba,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Gltf, Self::Pbrt, Self::Mitsuba];
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gltf => "gltf",
+            Self::Pbrt => "pbrt",
+            Self::Mitsuba => "mitsuba",
+        }
+    }
+
+    /// The target of a name; an unknown one is an [`Error::Unknown`].
+    pub fn named(text: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(|| Error::Unknown {
+            what: "format",
+            name: text.to_owned(),
+            near: names::near(text, Self::ALL.map(Self::name)),
+        })
+    }
+
+    /// The extensions that its files bear.
+    const fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Gltf => &["glb", "gltf"],
+            Self::Pbrt => &["pbrt"],
+            Self::Mitsuba => &["xml"],
+        }
+    }
+
+    /// Refuses a file name whose extension is another format's, before the work instead of after it.
+    pub fn check(self, file: &Path) -> Result<()> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if self.extensions().contains(&&*extension) {
+            return Ok(());
+        }
+        let right: Vec<String> = self.extensions().iter().map(|extension| format!(".{extension}")).collect();
+        Err(Error::Invalid(format!(
+            "`{}` is no name for a {} file: use {}",
+            file.display(),
+            self.name(),
+            right.join(" or ")
+        )))
+    }
+}

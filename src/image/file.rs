@@ -1,0 +1,31 @@
+//! A picture in a file: read and written in the format that the file's name asks for.
+
+use super::format::Format;
+use super::picture::Picture;
+use super::{exr, png};
+use crate::base::error::Result;
+use crate::base::file::write_whole;
+use std::path::Path;
+
+/// Reads a picture in the format that the extension of `path` names.
+///
+/// EXR gives its numbers as they are, PNG its displayed values, `[0, 1]`, with the sRGB curve undone.
+pub fn read(path: &Path) -> Result<Picture> {
+    match Format::of(path)? {
+        Format::Png => png::read(path),
+        Format::Exr => exr::read(path),
+    }
+}
+
+/// Writes `picture` in the format that the extension of `path` names, whole or not at all.
+///
+/// `exposure` (display units per unit of the picture) is for PNG alone: EXR keeps the numbers as they are. Gives the
+/// number of pixels that are not finite: magenta in a PNG, kept in an EXR.
+pub fn write(path: &Path, picture: &Picture, exposure: f32) -> Result<usize> {
+    let bytes = match Format::of(path)? {
+        Format::Png => png::encode(picture, exposure)?,
+        Format::Exr => exr::encode(picture)?,
+    };
+    write_whole(path, &bytes)?;
+    Ok(picture.not_finite())
+}

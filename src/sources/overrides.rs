@@ -1,0 +1,16 @@
+//! What a caller sets in place of a file's own words.
+
+/// What a caller sets in place of the file's own words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The seed of a recipe's city.
+    pub seed: Option<u64>,
+    /// Pixels across and down.
+    pub resolution: Option<(u32, u32)>,
+    /// Exposure value at ISO 100.
+    pub ev100: Option<f32>,
+    /// Lights of a recipe's generated city, at the recipe's density: its extent grows with them about the same middle.
+    pub lights: Option<u64>,
+    /// The camera of a glTF file, by the name of its node or its own.
+    pub camera: Option<String>,
+}

@@ -1,0 +1,37 @@
+//! What is a study, and how is it run?
+
+use super::options::Options;
+use super::session::Session;
+use crate::base::error::Result;
+use crate::measure::clock::Cpu;
+use crate::measure::observer::Observer;
+use crate::record::ResultFolder;
+use crate::record::study::Study;
+
+/// A study that can be named.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// Its name, as typed.
+    pub name: &'static str,
+    /// What it asks.
+    pub question: &'static str,
+    /// What runs it.
+    pub(super) run: fn(&Session<'_>) -> Result<Study>,
+}
+
+impl Entry {
+    /// Runs the study; `command` is what was typed.
+    ///
+    /// `folder` opens the folder that it is recorded in, which holds nothing yet or the same study, interrupted; it is
+    /// called once all that was asked for has been read, so that a misspelt name leaves nothing behind.
+    pub fn run(
+        &self,
+        options: &Options,
+        command: String,
+        folder: &dyn Fn() -> Result<ResultFolder>,
+        watch: &dyn Observer,
+    ) -> Result<Study> {
+        let Self { name, question, run } = *self;
+        run(&Session { name, question, options, command, folder, watch, clock: Cpu::new() })
+    }
+}

@@ -1,0 +1,20 @@
+//! Which studies are there?
+
+use super::entry::Entry;
+use super::{cutoff, offsets, scaling, soft_shadows, strategies, visible};
+use crate::base::error::{Error, Result};
+use crate::base::names;
+
+/// Every study, in the order of `citylights list studies`.
+pub const STUDIES: [Entry; 6] =
+    [strategies::ENTRY, visible::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
+
+/// The study of that name.
+pub fn find(name: &str) -> Result<Entry> {
+    let unknown = || Error::Unknown {
+        what: "study",
+        name: name.to_owned(),
+        near: names::near(name, STUDIES.iter().map(|entry| entry.name)),
+    };
+    STUDIES.into_iter().find(|entry| entry.name == name).ok_or_else(unknown)
+}

@@ -1,0 +1,123 @@
+//! Is a strategy right on a stage?
+
+use super::by_chance::by_chance;
+use super::check::Check;
+use super::impossible::{POSSIBLE, possible};
+use super::options::Options;
+use super::spread::spread;
+use super::subject::Subject;
+use super::truth::Truth;
+use super::{arrival, contract, coverage, estimate, observe, seeds, weights};
+use crate::base::error::Result;
+use crate::base::random::hash;
+use crate::scene::receiver::Receiver;
+use crate::strategy::{AnySampler, BuildContext, Claim, Configured};
+use crate::visibility::stage::Stage;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// How many times as much the second look draws.
+const MORE: usize = 4;
+
+/// A stage and what is true at some of its receivers: checks any number of strategies, on any threads.
+pub struct Verifier<'a> {
+    pub(super) stage: &'a Stage,
+    pub(super) options: Options,
+    pub(super) receivers: Vec<Receiver>,
+    pub(super) truths: Vec<Truth>,
+    /// The same with other numbers and more of them, made when first needed.
+    second: OnceLock<Box<Self>>,
+}
+
+impl<'a> Verifier<'a> {
+    /// Finds the truth at `options.receivers` receivers of a stage.
+    pub fn new(stage: &'a Stage, options: Options) -> Self {
+        Self::at(stage, spread(stage.receivers(), options.receivers), options)
+    }
+
+    /// Finds the truth at receivers of a stage.
+    pub(super) fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: Options) -> Self {
+        let truths = receivers.par_iter().map(|at| Truth::new(stage, at, options.points, options.seed)).collect();
+        Self { stage, options, receivers, truths, second: OnceLock::new() }
+    }
+
+    /// What each light adds, at each receiver.
+    pub fn truths(&self) -> &[Truth] {
+        &self.truths
+    }
+
+    /// Checks a strategy: levels 0 and 1.
+    pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
+        let build = || strategy.build(BuildContext { stage: self.stage, seed: self.options.seed });
+        let sampler = build()?;
+        let mut checks = self.verify_sampler(&*sampler, strategy.info().claim);
+        if checks.iter().all(|check| check.passed || !POSSIBLE.contains(&check.name)) {
+            checks.push(arrival::order(self.stage.receivers(), &self.receivers, self.options.seed, build)?);
+        }
+        Ok(checks)
+    }
+
+    /// Checks a sampler that was built for the stage and claims so much. What takes more than one sampler to see,
+    /// [`verify`](Self::verify) checks.
+    pub fn verify_sampler(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
+        let mut checks = self.look(sampler, claim);
+        if checks.iter().any(|check| !check.passed && by_chance(check)) {
+            let second = self.second().look(sampler, claim);
+            for check in checks.iter_mut().filter(|check| !check.passed && by_chance(check)) {
+                if let Some(again) = second.iter().find(|again| again.name == check.name) {
+                    check.clone_from(again);
+                }
+            }
+        }
+        checks
+    }
+
+    /// One look: every check fails a right sampler with the chance `options.level`.
+    pub fn look(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
+        let subject = self.subject(sampler);
+        let mut impossible = contract::impossible(&subject);
+        // An id that is out of range has nothing to be looked up, and no number is near one that is none.
+        if impossible.any() {
+            return possible(&impossible).into();
+        }
+        let sites = observe::sites(&subject);
+        sites.iter().for_each(|site| impossible.add(&site.impossible));
+        let mut checks = Vec::from(possible(&impossible));
+        if impossible.any() {
+            return checks;
+        }
+        checks.extend(contract::exact(&subject));
+        checks.push(seeds::another(&subject));
+        checks.push(contract::picks(&sites, &self.options));
+        match claim {
+            Claim::Unbiased => {
+                // A biased strategy's pick may stand for other lights than itself, as those of lightcuts do.
+                checks.push(contract::reciprocal(&sites));
+                checks.push(coverage::coverage(self.stage.scene(), &sites));
+                checks.extend(weights::weights(&sites, &self.options));
+                checks.extend(estimate::estimate(&sites, &self.options));
+            }
+            Claim::Biased(why) => checks.push(estimate::bias(&sites, why)),
+        }
+        checks
+    }
+
+    /// A sampler, to be checked against what is true here.
+    pub(super) fn subject<'v>(&'v self, sampler: &'v dyn AnySampler) -> Subject<'v> {
+        let Self { stage, options, receivers, truths, .. } = self;
+        Subject { stage, options, receivers, truths, sampler }
+    }
+
+    /// The same with other numbers and more of them.
+    pub(super) fn second(&self) -> &Self {
+        self.second.get_or_init(|| {
+            let options = Options {
+                draws: self.options.draws * MORE,
+                points: self.options.points * MORE as u32,
+                seed: hash(&[self.options.seed, u64::from_le_bytes(*b"2nd look")]),
+                ..self.options
+            };
+            Box::new(Self::at(self.stage, self.receivers.clone(), options))
+        })
+    }
+}
