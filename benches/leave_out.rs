@@ -1,6 +1,6 @@
 //! Does a feature that a scene does not use cost anything? See [`citylights::bench::leave_out`].
 //!
-//! With another strategy than `power`: `CITYLIGHTS_BENCH_STRATEGY=uniform cargo bench --bench leave-out`.
+//! With another strategy than `power`: `CITYLIGHTS_BENCH_STRATEGY=uniform cargo bench --features bench --bench leave-out`.
 
 use citylights::base::error::Result;
 use citylights::strategy::Registry;

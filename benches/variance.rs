@@ -1,7 +1,7 @@
 //! How large is a strategy's error after one pass? See [`citylights::bench::variance`].
 //!
-//! To see that a worse estimator is found: `cargo bench --bench variance -- --save-baseline before`, then
-//! `CITYLIGHTS_BENCH_MUTANT=1 cargo bench --bench variance -- --baseline before`. Each pick of [`Mutant`]'s strategies is
+//! To see that a worse estimator is found: `cargo bench --features bench --bench variance -- --save-baseline before`, then
+//! `CITYLIGHTS_BENCH_MUTANT=1 cargo bench --features bench --bench variance -- --baseline before`. Each pick of [`Mutant`]'s strategies is
 //! then kept with a chance of 1/4 only, and weighted four times.
 
 use citylights::base::draws::Draws;

@@ -8,7 +8,7 @@ use crate::base::statistics::sidak;
 use crate::image::Picture;
 use crate::measure::clock::Cpu;
 use crate::measure::compare::{self as comparison, Options};
-use crate::measure::engine::{Engine, build_seed};
+use crate::measure::engine::Engine;
 use crate::measure::films::Films;
 use crate::measure::observer::Unobserved;
 use crate::measure::plan::Budget;
@@ -33,7 +33,7 @@ use std::path::Path;
 pub fn render(strategy: &Configured, scene: Scene, passes: u32, seed: u64) -> Result<Picture> {
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let key = RunKey { seed, run: 0 };
-    let sampler = strategy.build(BuildContext { stage: &stage, seed: build_seed(key) })?;
+    let sampler = strategy.build(BuildContext { stage: &stage, seed })?;
     let mut film = Film::new(stage.receivers().len());
     Plan { stage: &stage, receivers: stage.receivers(), sampler: sampler.as_ref(), key }
         .run_parallel(passes, &mut film);
@@ -59,16 +59,17 @@ pub fn verify(strategy: &Configured, scene: &Scene) -> Result<Vec<Check>> {
 }
 
 /// Error against run time on a scene: 16 runs of up to 64 passes, two side by side. Rows and the cached reference go to
-/// `folder`, which must exist.
+/// `folder`, which must exist and hold no rows yet.
 ///
 /// # Errors
-/// A folder that cannot be written; a reference that its work does not suffice for. A strategy that fails a check is an
+/// A folder that cannot be written, or that holds rows; a reference that its work does not suffice for. A strategy that fails a check is an
 /// error in its own summary alone.
 pub fn compare(strategies: &[Configured], scene: Scene, folder: &Path) -> Result<SceneRecord> {
     let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
     let name = stage.scene().name();
     let clock = Cpu::new();
     let engine = Engine { clock: &clock, workers: 2, seed: 1 };
+    let films = Films::of(folder, name);
     let options = Options {
         typed: &format!("citylights verify {name}"),
         strategies,
@@ -78,8 +79,10 @@ pub fn compare(strategies: &[Configured], scene: Scene, folder: &Path) -> Result
         engine: &engine,
         reference_work_s: WORK_S,
         cache: folder,
-        films: &Films::of(folder, name),
+        films: &films,
     };
     let mut rows = RowWriter::create(folder)?;
-    Ok(comparison::compare(&stage, name, &options, &[], &mut rows, &Unobserved)?.scene)
+    let found = comparison::compare(&stage, name, &options, &[], &mut rows, &Unobserved)?.scene;
+    films.remove()?;
+    Ok(found)
 }

@@ -20,7 +20,7 @@ pub enum Fate {
     Adds,
     /// No shadow ray was cast.
     Ends(EarlyOut),
-    /// Its shadow ray met something; `None` where that is not the first thing on the ray.
+    /// Its shadow ray met something; `None` where that could not be told from what the ray may pass over.
     Blocked(Option<Met>),
 }
 
@@ -35,6 +35,8 @@ pub struct Explained {
     pub point: Option<Vec3>,
     /// Luminance that it adds to the pass, weight included, in cd/m^2; where it is blocked, what it would have added.
     pub adds: f32,
+    /// Picks of this light in a pass that are expected; none where the strategy cannot tell.
+    pub expected: Option<f32>,
     /// What became of it.
     pub fate: Fate,
 }
@@ -79,22 +81,33 @@ const POINTS: u32 = 1024;
 /// Explains a strategy at a pixel, over so many passes: the very picks that `render` makes with this seed.
 ///
 /// # Errors
-/// A pixel outside the film, or that sees the sky or an emitter; a strategy that cannot serve the scene.
+/// A pixel outside the film, or that sees the sky or an emitter; a strategy that cannot serve the scene, or that picks a
+/// light which there is not.
 pub fn explain(stage: &Stage, strategy: &Configured, [x, y]: [u32; 2], passes: u32, seed: u64) -> Result<Explanation> {
     let at = receiver(stage, [x, y])?;
     let key = RunKey { seed, run: 0 };
     let sampler = strategy.build(BuildContext { stage, seed })?;
     let picks = picks(stage, sampler.as_ref(), &at, key, passes);
     let mut counts = vec![0.0; stage.scene().lights().len()];
+    let mut picked = vec![false; counts.len()];
+    for pick in picks.iter().flatten() {
+        let light = pick.light;
+        let there = picked.get_mut(light as usize);
+        *there.ok_or_else(|| Error::Invalid(format!("light {light} is picked, and there is no such light")))? = true;
+    }
     let told = sampler.expected_counts(&at, &mut counts);
     let truth = Truth::new(stage, &at, POINTS, seed);
     let mut shares: Vec<Share> = (0..)
         .zip(truth.lights())
         .map(|(light, &exact)| Share { light, exact, expected: told.then(|| counts[light as usize]) })
-        .filter(|share| share.exact > 0.0 || share.expected.is_some_and(|count| count > 0.0))
+        .filter(|share| {
+            share.exact > 0.0 || picked[share.light as usize] || share.expected.is_some_and(|count| count > 0.0)
+        })
         .collect();
     shares.sort_by(|a, b| b.exact.total_cmp(&a.exact).then(a.light.cmp(&b.light)));
-    let passes = picks.iter().map(|pass| pass.iter().map(|pick| fate(stage, &at, pick)).collect()).collect();
+    let expected = |pick: &Pick| told.then(|| counts[pick.light as usize]);
+    let explained = |pick: &Pick| Explained { expected: expected(pick), ..fate(stage, &at, pick) };
+    let passes = picks.iter().map(|pass| pass.iter().map(explained).collect()).collect();
     Ok(Explanation { at, passes, shares })
 }
 
@@ -132,16 +145,19 @@ fn fate(stage: &Stage, at: &Receiver, pick: &Pick) -> Explained {
         Ok(arrival) => arrival,
         Err(end) => {
             let Pick { light, weight, .. } = *pick;
-            return Explained { light, weight, point: None, adds: 0.0, fate: Fate::Ends(end) };
+            return Explained { light, weight, point: None, adds: 0.0, expected: None, fate: Fate::Ends(end) };
         }
     };
     let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
     let fate = if stage.occluders().visible(&segment) {
         Fate::Adds
     } else {
-        let first = stage.occluders().first(segment.origin, segment.along.as_dvec3().normalize());
-        Fate::Blocked(first.map(|(met, _)| met))
+        let along = segment.along.as_dvec3();
+        let within = |way: f64| way >= f64::from(segment.t_min) && way <= f64::from(segment.t_max);
+        let first = stage.occluders().first(segment.origin, along.normalize());
+        Fate::Blocked(first.filter(|(_, distance)| within(distance / along.length())).map(|(met, _)| met))
     };
     let point = arrival.distance.is_finite().then(|| at.position + arrival.direction * arrival.distance);
-    Explained { light: pick.light, weight: pick.weight, point, adds: luminance(arrival.radiance) * pick.weight, fate }
+    let adds = luminance(arrival.radiance) * pick.weight;
+    Explained { light: pick.light, weight: pick.weight, point, adds, expected: None, fate }
 }

@@ -6,7 +6,7 @@
 //! harness with every feature takes over what it takes with those that the scene needs: what leaving out is worth.
 //!
 //! Both are taken in turns within one run, so that the machine's mood cancels. The strategy is `power`, which spends
-//! least on choosingunless another is named.
+//! least on choosing, unless another is named.
 
 use super::quantity::{RATIO, Reported, criterion, flat};
 use super::scenes::{name, stage};
@@ -17,7 +17,6 @@ use crate::measure::target::spread;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::light::Kind;
-use crate::scene::light_sampling::LightSampling;
 use crate::scene::needs::Needs;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::contribution;
@@ -102,7 +101,7 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
                 let mut radiance = DVec3::ZERO;
                 for pick in call {
                     let light = &lights[pick.light as usize];
-                    let Ok(arrival) = contribution::<KINDS>(LightSampling::Area, light, pick.uv, at) else {
+                    let Ok(arrival) = contribution::<KINDS>(stage.light_sampling(), light, pick.uv, at) else {
                         continue;
                     };
                     if BLOCKED {

@@ -7,7 +7,7 @@
 //! | how fast are the parts that every strategy stands on? | [`kernels()`] |
 //! | does a feature that a scene does not use cost anything? | [`leave_out()`] |
 //!
-//! To compare a change: `cargo bench -- --save-baseline before`, change it, `cargo bench -- --baseline before`. A part of a
+//! To compare a change: `cargo bench --features bench -- --save-baseline before`, change it, `cargo bench --features bench -- --baseline before`. A part of a
 //! name as an argument selects: `sample/downtown`.
 
 mod kernels;

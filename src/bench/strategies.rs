@@ -6,8 +6,8 @@
 //! squares of neighbours from all over the frame; a strategy that takes many lights gets fewer. A set-up under 1 µs is
 //! nothing but the clock's own 0.4 µs and an allocation.
 //!
-//! To compare a change: `cargo bench --bench strategies -- --save-baseline before`, change it,
-//! `cargo bench --bench strategies -- --baseline before`. A part of a name as an argument selects: `sample/downtown`.
+//! To compare a change: `cargo bench --features bench --bench strategies -- --save-baseline before`, change it,
+//! `cargo bench --features bench --bench strategies -- --baseline before`. A part of a name as an argument selects: `sample/downtown`.
 
 use super::quantity::{CPU_TIME, Reported, criterion, flat};
 use super::scenes::{name, stage};
@@ -18,7 +18,7 @@ use crate::measure::engine::{Block, build_seed};
 use crate::measure::target::{SQUARE, spread, squares};
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::strategy::{BuildContext, Registry};
+use crate::strategy::{BuildContext, Registry, Role};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use std::path::Path;
 
@@ -44,7 +44,7 @@ fn bench(criterion: &mut Criterion<Reported>, registry: &Registry, file: &Path) 
     let (scene, stage) = (name(file), stage(file)?);
     let context = BuildContext { stage: &stage, seed: build_seed(KEY) };
     eprintln!("{scene}: {} lights, {} to choose from", stage.scene().lights().len(), stage.lights().len());
-    for strategy in registry.all()? {
+    for strategy in registry.all()?.into_iter().filter(|one| one.info().role != Role::Oracle) {
         let name = strategy.name();
         let mut group = flat(criterion, "setup");
         let block = |receivers, passes| Block { stage: &stage, receivers, strategy: &strategy, key: KEY, passes };

@@ -10,7 +10,7 @@
 //! machine, so that two runs of the same code give the same figure to the last digit. Criterion prints numbers of
 //! iterations that follow from time; they decide nothing here.
 //!
-//! To compare a change: `cargo bench --bench variance -- --save-baseline before`, change it, `cargo bench --bench
+//! To compare a change: `cargo bench --features bench --bench variance -- --save-baseline before`, change it, `cargo bench --features bench --bench
 //! variance -- --baseline before`.
 
 use super::quantity::{RELATIVE_ERROR, Reported, criterion, flat};

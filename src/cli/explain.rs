@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         let found = explain(&stage, &strategy, [x, y], passes, seed)?;
         let at = &found.at;
         print(&format!(
-            "{} at pixel {x},{y}: position {} m, normal {}, albedo {}\nexact luminance {} cd/m^2, mean of these passes {}\n",
+            "{} at pixel {x},{y}: position {:.3} m, normal {:.3}, albedo {:.3}\nexact luminance {} cd/m^2, mean of these passes {}\n",
             strategy.name(),
             at.position,
             at.normal,
@@ -67,13 +67,12 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
 /// Each pick of each pass.
 fn picks(scene: &Scene, found: &Explanation) -> String {
     let mut text = String::new();
-    let expected = |light| found.shares.iter().find(|share| share.light == light).and_then(|share| share.expected);
     for (number, pass) in found.passes.iter().enumerate() {
         _ = writeln!(text, "\npass {number}{}", if pass.is_empty() { ": no light is picked" } else { "" });
         for pick in pass {
-            let Explained { light, weight, point, adds, fate } = pick;
+            let Explained { light, weight, point, adds, expected, fate } = pick;
             let point = point.map_or_else(String::new, |point| format!(", point {point:.3}"));
-            let told = expected(*light).map_or_else(|| "cannot be told".to_owned(), |count| short(f64::from(count)));
+            let told = expected.map_or_else(|| "cannot be told".to_owned(), |count| short(f64::from(count)));
             _ = writeln!(text, "  {}{point}", name(scene, *light));
             _ = writeln!(
                 text,
@@ -131,7 +130,7 @@ fn shares(scene: &Scene, found: &Explanation, most: usize) -> String {
         _ = writeln!(text, "  {:>12} {percent:>6.2} %  the other {}", short(sum), grouped(rest.len() as u64));
     }
     text.push_str(
-        "  over share: the part of the picks that go to the light over its part of the radiance; 1 is best\n",
+        "  over share: the light's part of the picks over its part of the radiance; 1 is best where lights are drawn one by one\n",
     );
     text
 }

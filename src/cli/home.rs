@@ -12,9 +12,17 @@ pub(super) struct Home<'a> {
 }
 
 impl Home<'_> {
-    /// What was typed, for records.
+    /// What was typed, for records: as it can be typed again.
     pub(super) fn command(&self) -> String {
-        let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+        let plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@;".contains(c);
+        let quoted = |text: String| {
+            if !text.is_empty() && text.chars().all(plain) {
+                text
+            } else {
+                format!("'{}'", text.replace('\'', "'\\''"))
+            }
+        };
+        let arguments = std::env::args_os().skip(1).map(|argument| quoted(argument.to_string_lossy().into_owned()));
         std::iter::once(self.program.name.clone()).chain(arguments).collect::<Vec<_>>().join(" ")
     }
 

@@ -60,6 +60,13 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
             Derived { name, text }
         });
         let swept: Vec<Derived> = swept.collect();
+        if let Some(twice) = swept
+            .iter()
+            .find(|plot| run.scenes.iter().any(|s| plot.name == format!("{}.svg", store::file_name(&s.name))))
+        {
+            let text = format!("two plots would both be written to `{}`: rename a scene", twice.name);
+            return Err(Error::Invalid(text));
+        }
         let mut text = page(run, scene, rows, &plot_name);
         swept.iter().for_each(|plot| text.push_str(&format!("\n![{0}]({0})\n", plot.name)));
         files.push(Derived { text, name: page_name });

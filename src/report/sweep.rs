@@ -4,7 +4,7 @@ use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::{Line, Mark};
 use super::number::short;
 use crate::base::error::Result;
-use crate::record::{SceneRecord, Summary};
+use crate::record::{Read, SceneRecord, Summary};
 use std::collections::BTreeMap;
 
 /// Fewest values that make a curve.
@@ -55,7 +55,8 @@ fn chart(scene: &SceneRecord, parameter: &str, curves: &BTreeMap<String, Curve<'
     let y = Scale { label: "CPU seconds".to_owned(), logarithmic: true };
     let series = curves.iter().enumerate().map(|(nth, (family, curve))| {
         let dot = |&(value, summary): &(f64, &Summary)| {
-            let found = summary.seconds_to.get(scene.ranked_by as usize)?.value;
+            let reading = summary.seconds_to.get(scene.ranked_by as usize)?;
+            let found = matches!(reading.how, Read::Measured | Read::Extrapolated).then_some(reading.value)?;
             let dot = Dot { x: value, y: found.mean, low: found.low, high: found.high };
             (x.shows(dot.x) && y.shows(dot.y)).then_some(dot)
         };
@@ -69,6 +70,12 @@ fn chart(scene: &SceneRecord, parameter: &str, curves: &BTreeMap<String, Curve<'
     let mut remarks = Vec::new();
     if series.iter().any(|s| s.mark.line == Line::Dashed && !s.points.is_empty()) {
         remarks.push((34, "dashed and hollow: biased".to_owned()));
+    }
+    let beyond = |summary: &&Summary| {
+        summary.seconds_to.get(scene.ranked_by as usize).is_some_and(|reading| reading.how == Read::Extrapolated)
+    };
+    if curves.values().flatten().any(|(_, summary)| beyond(summary)) {
+        remarks.push((25, "some lie beyond the largest budget: ~ in the table".to_owned()));
     }
     Chart {
         title: format!("{}: {parameter}", scene.name),

@@ -26,6 +26,7 @@ pub(crate) trait AnyStrategy: Send + Sync {
 /// A strategy with all its parameters settled.
 pub struct Configured {
     name: String,
+    plain_name: String,
     parameters: Vec<Parameter>,
     strategy: Box<dyn AnyStrategy>,
     points: Points,
@@ -40,15 +41,24 @@ impl Configured {
         strategy: Box<dyn AnyStrategy>,
         points: Points,
     ) -> Self {
-        let named = |p: &&Parameter| p.value != p.default || varied.iter().any(|name| name == p.name);
-        let changed: Vec<String> = parameters.iter().filter(named).map(|p| format!("{}={}", p.name, p.value)).collect();
-        let name = if changed.is_empty() { name.to_owned() } else { format!("{name}:{}", changed.join(",")) };
-        Self { name, parameters, strategy, points }
+        let with = |varied: &[String]| {
+            let named = |p: &&Parameter| p.value != p.default || varied.iter().any(|name| name == p.name);
+            let shown = parameters.iter().filter(named).map(|p| format!("{}={}", p.name, p.value));
+            let shown: Vec<String> = shown.collect();
+            if shown.is_empty() { name.to_owned() } else { format!("{name}:{}", shown.join(",")) }
+        };
+        let (plain_name, name) = (with(&[]), with(varied));
+        Self { name, plain_name, parameters, strategy, points }
     }
 
-    /// Its name with the parameters that differ from their defaults: `power:picks=4`.
+    /// Its name with the parameters that differ from their defaults, `power:picks=4`, and those that a sweep varied.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The same, with no parameter at its default.
+    pub(super) fn plain_name(&self) -> &str {
+        &self.plain_name
     }
 
     /// What it is.

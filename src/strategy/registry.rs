@@ -52,6 +52,9 @@ impl Registry {
     /// # Errors
     /// An unknown name or parameter, with those that come near it; a value that is not allowed, with those that are.
     pub fn parse(&self, text: &str) -> Result<Configured> {
+        if text.contains('{') {
+            return Err(Error::Invalid(format!("`{text}` stands for several strategies; one is asked for here")));
+        }
         self.read(text, &[], points)
     }
 
@@ -84,8 +87,8 @@ impl Registry {
             }
         }
         for (i, strategy) in parsed.iter().enumerate() {
-            if parsed[..i].iter().any(|before| before.name() == strategy.name()) {
-                return Err(Error::Invalid(format!("strategy `{}` is named twice", strategy.name())));
+            if parsed[..i].iter().any(|before| before.plain_name() == strategy.plain_name()) {
+                return Err(Error::Invalid(format!("strategy `{}` is named twice", strategy.plain_name())));
             }
         }
         Ok(parsed)

@@ -45,6 +45,14 @@ pub(super) fn expand(text: &str) -> Result<Vec<Swept>> {
         let Some(parameter) = before.strip_suffix('=').map(|b| b.rsplit([':', ',', ';']).next().unwrap_or(b)) else {
             return wrong("braces stand for a parameter's value, as in `light-tree:arity={2,4,8}`");
         };
+        if after[1..close].contains('{') {
+            return wrong("braces do not stand within braces");
+        }
+        if before.matches(':').count() > 1 {
+            return wrong(
+                "a sweep is of a strategy's own parameters; sweep whole ones, as `from={power:picks=1,power:picks=2}`",
+            );
+        }
         let values = values(text, &after[1..close])?;
         if all.len() * values.len() > MOST {
             return wrong(&format!("stands for more than {MOST} strategies"));
@@ -85,7 +93,8 @@ fn values(text: &str, braces: &str) -> Result<Vec<String>> {
     }
     // By their number, so that no rounding adds up; a last one that rounding put just beyond the end belongs to it.
     let value = |i: u32| if times { first * by.powi(i as i32) } else { first + by * f64::from(i) };
-    let within = |value: &f64| *value <= last * (1.0 + 1e-9);
+    let end = if times { last * (1.0 + 1e-9 * (by - 1.0)) } else { last + 1e-9 * by };
+    let within = |value: &f64| *value <= end;
     let all: Vec<String> = (0..).map(value).take_while(within).take(MOST + 1).map(shown).collect();
     Ok(all)
 }
@@ -119,6 +128,8 @@ mod tests {
         let both = expand("power:picks={1,2},mix={0,1}").expect("both");
         assert_eq!(both.len(), 4);
         assert_eq!(both[1], Swept { text: "power:picks=1,mix=1".into(), varied: vec!["picks".into(), "mix".into()] });
+        assert_eq!(texts("power:mix={-0.2..0+0.1}"), ["-0.2", "-0.1", "0"].map(|n| format!("power:mix={n}")));
+        assert_eq!(texts("resampled:from={power:picks=2,uniform}").len(), 2);
         assert_eq!(texts("power"), ["power"]);
         assert_eq!(parts("power:mix={0,1},picks=2 uniform"), ["power:mix={0,1}", "picks=2", "uniform"]);
     }
@@ -136,6 +147,8 @@ mod tests {
             ("power:picks={0..8*2}", "must rise"),
             ("power:picks={1..8*1}", "must rise"),
             ("power:picks={1..1000}", "more than 64"),
+            ("power:picks={{1,2}}", "within braces"),
+            ("resampled:from=power:picks={1,2}", "own parameters"),
         ] {
             assert!(message(text).contains(right), "{text}: {}", message(text));
         }

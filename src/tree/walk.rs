@@ -21,7 +21,8 @@ pub struct Walk<'w, const N: usize, T> {
 }
 
 impl<const N: usize> Tree<N> {
-    /// Walks at a receiver: at another than before, the first thing to do is to [arrive](Walk::arrive).
+    /// Walks at a receiver: the first thing to do at another than before, or with a new memory, is to
+    /// [arrive](Walk::arrive); picks panic without.
     #[inline]
     pub fn walk<'w, T: Tally>(
         &'w self,

@@ -34,6 +34,99 @@ const FILES: [(&str, &str); 7] = [
 /// A scene to compare on.
 const SCENE: (&str, &str) = ("scenes/first-night.toml", include_str!("../../../scenes/first-night.toml"));
 
+/// Words of Rust, and names of crates and folders that it would be built with.
+const RESERVED: [&str; 59] = [
+    "abstract",
+    "alloc",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "build",
+    "citylights",
+    "const",
+    "continue",
+    "core",
+    "crate",
+    "deps",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "examples",
+    "extern",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "impl",
+    "in",
+    "incremental",
+    "let",
+    "loop",
+    "macro",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "priv",
+    "proc-macro",
+    "pub",
+    "ref",
+    "return",
+    "self",
+    "static",
+    "std",
+    "struct",
+    "super",
+    "test",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "unsafe",
+    "unsized",
+    "use",
+    "virtual",
+    "while",
+];
+
+/// Types that the crate's code names already.
+const TAKEN: [&str; 26] = [
+    "AliasTable",
+    "Arguments",
+    "BuildContext",
+    "Claim",
+    "Configured",
+    "Cumulative",
+    "Draws",
+    "Error",
+    "Info",
+    "Kind",
+    "Light",
+    "LightId",
+    "LightSampler",
+    "LightTable",
+    "Pick",
+    "Picks",
+    "Receiver",
+    "Registry",
+    "Reservoir",
+    "Result",
+    "Role",
+    "Sampler",
+    "Scene",
+    "Strategy",
+    "Tally",
+    "Uncounted",
+];
+
 pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
     let name = &arguments.name;
     check_name(name, home)?;
@@ -77,8 +170,8 @@ fn check_name(name: &str, home: &Home<'_>) -> Result<()> {
     if home.registry.infos().any(|info| info.name == name) {
         return refuse("is the name of a strategy that there is; choose another");
     }
-    if ["citylights", "core", "std", "alloc", "test"].contains(&name) {
-        return refuse("is the name of a crate that it would be built with; choose another");
+    if RESERVED.contains(&name) || TAKEN.contains(&type_name(name).as_str()) || name.contains("--") {
+        return refuse("means something else to Rust, to cargo or in the crate's own code; choose another");
     }
     Ok(())
 }
@@ -87,8 +180,9 @@ fn check_name(name: &str, home: &Home<'_>) -> Result<()> {
 fn library(named: Option<&Path>) -> Result<PathBuf> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = named.unwrap_or(own);
-    if !folder.join("Cargo.toml").is_file() {
-        let text = "holds no Cargo.toml: name a checkout of citylights with --library";
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
+    if !manifest.contains("name = \"citylights\"") {
+        let text = "holds no Cargo.toml of citylights: name a checkout of it with --library";
         return Err(Error::Invalid(format!("{} {text}", folder.display())));
     }
     folder.canonicalize().map_err(Error::io("read", folder))

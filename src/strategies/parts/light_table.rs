@@ -16,12 +16,12 @@ impl LightTable {
     /// The lights of a stage, each with the weight that `weight` gives it: 0 or more.
     ///
     /// # Errors
-    /// A weight that is negative or no number.
+    /// A weight that is negative, infinite or no number.
     pub fn new(stage: &Stage, weight: impl Fn(&Light) -> f64) -> Result<Self> {
         let lights = stage.lights().to_vec();
         let table = stage.scene().lights();
         let weights: Vec<f64> = lights.iter().map(|&id| weight(&table[id as usize])).collect();
-        let table = weights.iter().any(|&w| w > 0.0).then(|| AliasTable::new(&weights)).transpose()?;
+        let table = weights.iter().any(|&w| w != 0.0).then(|| AliasTable::new(&weights)).transpose()?;
         Ok(Self { lights, table })
     }
 
