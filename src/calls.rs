@@ -9,7 +9,7 @@ use crate::image::Picture;
 use crate::measure::clock::Cpu;
 use crate::measure::compare::{self as comparison, Options};
 use crate::measure::engine::Engine;
-use crate::measure::films::Films;
+use crate::measure::image_store::ImageStore;
 use crate::measure::observer::Unobserved;
 use crate::measure::plan::Budget;
 use crate::measure::reference::WORK_S;
@@ -69,7 +69,7 @@ pub fn compare(strategies: &[Configured], scene: Scene, folder: &Path) -> Result
     let name = stage.scene().name();
     let clock = Cpu::new();
     let engine = Engine { clock: &clock, workers: 2, seed: 1 };
-    let films = Films::of(folder, name);
+    let films = ImageStore::of(folder, name);
     let options = Options {
         typed: &format!("citylights verify {name}"),
         strategies,

@@ -45,6 +45,8 @@ pub mod export;
 #[cfg(feature = "image")]
 pub mod image;
 #[cfg(feature = "measure")]
+pub mod inspect;
+#[cfg(feature = "measure")]
 pub mod measure;
 #[cfg(feature = "peers")]
 pub mod peers;

@@ -235,7 +235,7 @@ fn a_record_names_the_build_wherever_it_runs() {
     command.args(["--budget", "1", "--repeats", "2", "-s", "uniform", "--out", "out"]).assert().success();
     let record = citylights::record::store::read_run(&folder.path().join("out")).expect("a record");
     assert_eq!(record.version, env!("CARGO_PKG_VERSION"));
-    assert_eq!(record.revision, citylights::measure::environment::revision());
+    assert_eq!(record.revision, citylights::record::environment::revision());
     assert!(record.compiler.starts_with("rustc 1."), "{}", record.compiler);
     assert!(record.flags.contains("target features"), "{}", record.flags);
 }

@@ -6,7 +6,7 @@ use citylights::base::random::{RunKey, Stream};
 use citylights::base::statistics::Moments;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
-use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::cutoff::{Cutoff, Transfer};
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;

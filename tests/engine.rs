@@ -10,7 +10,7 @@ use citylights::base::random::RunKey;
 use citylights::measure::clock::{Clock, Cpu, Spent};
 use citylights::measure::compare::{Compared, Options, compare};
 use citylights::measure::engine::{Block, Engine};
-use citylights::measure::films::Films;
+use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
@@ -62,7 +62,7 @@ fn compared(clock: &dyn Clock, seed: u64, workers: usize) -> (SceneRecord, Vec<R
     let strategies =
         Registry::standard().parse_list("all,uniform,power,intensity,light-tree,resampled,influence").expect("a list");
     let engine = Engine { clock, workers, seed };
-    let films = Films::of(folder.path(), "engine");
+    let films = ImageStore::of(folder.path(), "engine");
     let options = Options {
         typed: "made.toml",
         strategies: &strategies,

@@ -3,7 +3,7 @@
 
 mod common;
 
-use citylights::export::{Target, export};
+use citylights::export::{Renderer, export};
 use citylights::scene::camera::Camera;
 use citylights::scene::light::{Light, Shape};
 use citylights::scene::{Parts, Scene};
@@ -30,11 +30,11 @@ fn rolled() -> Scene {
 }
 
 /// The bytes of the main file.
-fn bytes(scene: &Scene, target: Target, name: &str) -> Vec<u8> {
+fn bytes(scene: &Scene, target: Renderer, name: &str) -> Vec<u8> {
     export(scene, target, Path::new(name)).expect("an export").files.pop().expect("a file").1
 }
 
-fn text(scene: &Scene, target: Target, name: &str) -> String {
+fn text(scene: &Scene, target: Renderer, name: &str) -> String {
     String::from_utf8(bytes(scene, target, name)).expect("text")
 }
 
@@ -169,9 +169,12 @@ fn read(file: &[u8]) -> Read {
 #[test]
 fn the_same_scene_gives_the_same_bytes() {
     let scene = shipped("first-night");
-    for (target, name) in
-        [(Target::Gltf, "a.glb"), (Target::Gltf, "a.gltf"), (Target::Pbrt, "a.pbrt"), (Target::Mitsuba, "a.xml")]
-    {
+    for (target, name) in [
+        (Renderer::Gltf, "a.glb"),
+        (Renderer::Gltf, "a.gltf"),
+        (Renderer::Pbrt, "a.pbrt"),
+        (Renderer::Mitsuba, "a.xml"),
+    ] {
         let once = export(&scene, target, Path::new(name)).expect("an export");
         let again = export(&shipped("first-night"), target, Path::new(name)).expect("an export");
         assert!(once.files == again.files && !once.files.is_empty(), "{name}");
@@ -182,7 +185,7 @@ fn the_same_scene_gives_the_same_bytes() {
 fn gltf_carries_every_bit_of_lights_and_surfaces() {
     for scene in [rolled(), shipped("first-night"), shipped("moonlit"), shipped("extreme/orders-of-magnitude")] {
         for name in ["a.glb", "a.gltf"] {
-            let read = read(&bytes(&scene, Target::Gltf, name));
+            let read = read(&bytes(&scene, Renderer::Gltf, name));
             assert_eq!(sorted(read.lights.iter().map(key)), keys(&scene), "{}", scene.name());
             assert_eq!(read.surfaces, surfaces(&scene), "{}", scene.name());
             for group in scene.groups() {
@@ -214,7 +217,7 @@ fn gltf_lights_that_differ_in_one_number_are_not_one() {
         spot(0.9, 0.4),
     ];
     let scene = Scene::new(common::ground(5.0, lights)).expect("a scene");
-    let file = bytes(&scene, Target::Gltf, "a.glb");
+    let file = bytes(&scene, Renderer::Gltf, "a.glb");
     assert_eq!(sorted(read(&file).lights.iter().map(key)), keys(&scene));
     let document = gltf::Gltf::from_slice(&file).expect("glTF").document;
     assert_eq!(document.lights().expect("lights").count(), 8, "equal lights share an entry, others do not");
@@ -223,7 +226,7 @@ fn gltf_lights_that_differ_in_one_number_are_not_one() {
 #[test]
 fn gltf_turns_spots_and_moons_to_within_rounding() {
     for scene in [rolled(), shipped("moonlit"), shipped("plaza")] {
-        let read = read(&bytes(&scene, Target::Gltf, "a.glb"));
+        let read = read(&bytes(&scene, Renderer::Gltf, "a.glb"));
         let axes = |lights: &mut dyn Iterator<Item = Shape>| {
             let mut found: Vec<(Key, Vec3, [f32; 2])> = lights
                 .filter_map(|shape| match shape {
@@ -257,13 +260,13 @@ fn gltf_cones_stay_within_what_the_extension_allows() {
     // The reader above asserts it for each: the widest, those that round to one angle, the narrowest.
     let lights = vec![spot(1.0, 0.0), spot(f32::MIN_POSITIVE, 0.0), spot(1e-9, 5e-10), spot(1.0, 1.0f32.next_down())];
     let scene = Scene::new(common::ground(5.0, lights)).expect("a scene");
-    assert_eq!(read(&bytes(&scene, Target::Gltf, "a.glb")).lights.len(), 4);
+    assert_eq!(read(&bytes(&scene, Renderer::Gltf, "a.glb")).lights.len(), 4);
 }
 
 #[test]
 fn gltf_says_resolution_exposure_and_streets() {
     let scene = rolled();
-    let document = gltf::Gltf::from_slice(&bytes(&scene, Target::Gltf, "a.glb")).expect("glTF").document;
+    let document = gltf::Gltf::from_slice(&bytes(&scene, Renderer::Gltf, "a.glb")).expect("glTF").document;
     let value = |raw: &gltf::json::Extras| -> serde_json::Value {
         serde_json::from_str(raw.as_ref().expect("extras").get()).expect("JSON")
     };
@@ -276,14 +279,14 @@ fn gltf_says_resolution_exposure_and_streets() {
     assert!(document.as_json().asset.generator.as_deref().expect("a generator").starts_with("citylights "));
 
     let plain = Scene::new(Parts { ev100: None, ..scene.parts() }).expect("a scene");
-    let document = gltf::Gltf::from_slice(&bytes(&plain, Target::Gltf, "a.glb")).expect("glTF").document;
+    let document = gltf::Gltf::from_slice(&bytes(&plain, Renderer::Gltf, "a.glb")).expect("glTF").document;
     assert!(document.default_scene().expect("a scene").extras().is_none());
 }
 
 #[test]
 fn gltf_is_cut_into_meshes_of_a_building_or_so_and_not_too_many() {
     for (name, widest) in [("first-night", 40.0), ("downtown", 72.0), ("metropolis", 272.0)] {
-        let file = bytes(&shipped(name), Target::Gltf, "a.glb");
+        let file = bytes(&shipped(name), Renderer::Gltf, "a.glb");
         let document = gltf::Gltf::from_slice(&file).expect("glTF").document;
         assert!((100..=2048).contains(&document.meshes().len()), "{name}: {} meshes", document.meshes().len());
         // The ground's triangles reach farther than their cells; windows do not.
@@ -302,7 +305,7 @@ fn cameras_look_through_the_same_pixels_everywhere() {
         let camera = scene.camera();
         let (width, height) = camera.resolution();
 
-        let document = gltf::Gltf::from_slice(&bytes(&scene, Target::Gltf, "a.glb")).expect("glTF").document;
+        let document = gltf::Gltf::from_slice(&bytes(&scene, Renderer::Gltf, "a.glb")).expect("glTF").document;
         let node = document.nodes().find(|node| node.camera().is_some()).expect("a camera");
         let (translation, rotation, _) = node.transform().decomposed();
         assert_eq!(bits(ours(translation)), bits(camera.position()));
@@ -317,7 +320,7 @@ fn cameras_look_through_the_same_pixels_everywhere() {
         agrees(camera, axis(DVec3::NEG_Z), axis(DVec3::Y), fov, "glTF");
         assert!((lens.aspect_ratio().expect("an aspect") - width as f32 / height as f32).abs() < 1e-6);
 
-        let xml = text(&scene, Target::Mitsuba, "a.xml");
+        let xml = text(&scene, Renderer::Mitsuba, "a.xml");
         let sensor = between(&xml, "<sensor", "</sensor>");
         let look = |name: &str| numbers(between(sensor, &format!("{name}=\""), "\""));
         let (from, to, up) = (look("origin"), look("target"), look("up"));
@@ -331,7 +334,7 @@ fn cameras_look_through_the_same_pixels_everywhere() {
         let far: f32 = between(sensor, "name=\"far_clip\" value=\"", "\"").parse().expect("a distance");
         assert!(scene.surfaces().iter().all(|s| s.corners.iter().all(|c| c.distance(camera.position()) < far)));
 
-        let file = pbrt::parse(&text(&scene, Target::Pbrt, "a.pbrt"));
+        let file = pbrt::parse(&text(&scene, Renderer::Pbrt, "a.pbrt"));
         let [from, to, up] = file.look_at;
         assert_eq!(bits(from.as_vec3()), bits(camera.position()));
         assert_eq!(file.scale, DVec3::new(-1.0, 1.0, 1.0), "pbrt's camera is left-handed");
@@ -358,7 +361,7 @@ fn numbers(text: &str) -> DVec3 {
 #[test]
 fn pbrt_carries_every_bit_of_lights_and_surfaces() {
     for scene in [rolled(), shipped("first-night"), shipped("moonlit"), shipped("extreme/orders-of-magnitude")] {
-        let file = pbrt::parse(&text(&scene, Target::Pbrt, "a.pbrt"));
+        let file = pbrt::parse(&text(&scene, Renderer::Pbrt, "a.pbrt"));
         let mut lights = file.lights.clone();
         // Spots and moons have directions, which are compared below.
         let mut directions = Vec::new();
@@ -385,7 +388,7 @@ fn pbrt_carries_every_bit_of_lights_and_surfaces() {
 #[test]
 fn pbrt_films_keep_radiance_as_it_is() {
     let scene = shipped("plaza");
-    let written = text(&scene, Target::Pbrt, "a.pbrt");
+    let written = text(&scene, Renderer::Pbrt, "a.pbrt");
     let file = pbrt::parse(&written);
     assert_eq!(file.film.text("sensor"), "cie1931");
     assert_eq!(
@@ -394,14 +397,14 @@ fn pbrt_films_keep_radiance_as_it_is() {
     );
     assert_eq!(file.film.text("savefp16"), "false");
     assert!(!written.contains("power") && !written.contains("scale"));
-    let note = &export(&scene, Target::Pbrt, Path::new("a.pbrt")).expect("an export").notes[0];
+    let note = &export(&scene, Renderer::Pbrt, Path::new("a.pbrt")).expect("an export").notes[0];
     assert!(note.contains("same flux") && written.contains(note), "{note}");
 }
 
 #[test]
 fn mitsuba_files_name_their_meshes_and_cones() {
     let scene = rolled();
-    let exported = export(&scene, Target::Mitsuba, Path::new("some/where/town.xml")).expect("an export");
+    let exported = export(&scene, Renderer::Mitsuba, Path::new("some/where/town.xml")).expect("an export");
     let (path, xml) = exported.files.last().expect("a file");
     assert_eq!(path, Path::new("some/where/town.xml"));
     let xml = std::str::from_utf8(xml).expect("text");
@@ -463,13 +466,16 @@ fn serialized(file: &[u8]) -> Vec<Vec<[[u32; 3]; 3]>> {
 #[test]
 fn files_of_other_formats_are_refused() {
     let scene = rolled();
-    for (target, name) in
-        [(Target::Gltf, "a.pbrt"), (Target::Pbrt, "a"), (Target::Mitsuba, "a.glb"), (Target::Mitsuba, "a&b.xml")]
-    {
+    for (target, name) in [
+        (Renderer::Gltf, "a.pbrt"),
+        (Renderer::Pbrt, "a"),
+        (Renderer::Mitsuba, "a.glb"),
+        (Renderer::Mitsuba, "a&b.xml"),
+    ] {
         let error = export(&scene, target, Path::new(name)).expect_err(name).to_string();
         assert!(error.contains(name), "{error}");
     }
-    let error = Target::named("glft").expect_err("no such format").to_string();
+    let error = Renderer::named("glft").expect_err("no such format").to_string();
     assert!(error.contains("format `glft`") && error.contains("gltf"), "{error}");
 }
 

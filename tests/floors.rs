@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every room and its floor, as in the design.
-const FLOORS: [(&str, u8); 23] = [
+const FLOORS: [(&str, u8); 24] = [
     ("base", 0),
     ("scene", 1),
     ("record", 1),
@@ -26,6 +26,7 @@ const FLOORS: [(&str, u8); 23] = [
     ("stability", 8),
     ("explain", 9),
     ("measure", 9),
+    ("inspect", 10),
     ("report", 10),
     ("peers", 10),
     ("bench", 10),

@@ -368,7 +368,7 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     use citylights::measure::compare::{Compared, Options, compare};
     use citylights::measure::engine::Engine;
-    use citylights::measure::films::Films;
+    use citylights::measure::image_store::ImageStore;
     use citylights::measure::observer::Unobserved;
     use citylights::measure::plan::Budget;
     use citylights::record::store::RowWriter;
@@ -377,7 +377,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let strategies = ["right", "descent"].map(mutant);
     let budget = Budget::up_to(4, 1.0);
     let (cache, folder) = (folder.path().join("cache"), folder.path());
-    let films = &Films::of(folder, "mutants");
+    let films = &ImageStore::of(folder, "mutants");
     let engine = &Engine { clock: &alone::Alone::new(), workers: 1, seed: 1 };
     let options = Options {
         typed: "citylights verify sixteen.toml",

@@ -11,7 +11,7 @@ mod runs;
 use alone::Alone;
 use citylights::measure::compare::{Compared, Options as Comparison, compare};
 use citylights::measure::engine::Engine;
-use citylights::measure::films::Films;
+use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
@@ -73,7 +73,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let stage = stage(sixteen());
     let folder = tempfile::tempdir().expect("a folder");
     let strategies = Registry::standard().parse_list("all,power,oracle,intensity,restir").expect("a list");
-    let films = Films::of(folder.path(), "oracle");
+    let films = ImageStore::of(folder.path(), "oracle");
     let engine = Engine { clock: &Alone::new(), workers: 2, seed: 1 };
     let options = Comparison {
         typed: "made.toml",

@@ -3,7 +3,7 @@
 
 use citylights::base::error::Error;
 use citylights::scene::Scene;
-use citylights::scene::influence::{Cutoff, Transfer};
+use citylights::scene::cutoff::{Cutoff, Transfer};
 use citylights::scene::light::{Kind, Light, Shape};
 use citylights::sources::Overrides;
 use citylights::sources::recipe::{load, parse};

@@ -4,7 +4,7 @@
 
 mod common;
 
-use citylights::export::{Target, export};
+use citylights::export::{Renderer, export};
 use citylights::scene::light::{Light, Shape};
 use citylights::scene::{Parts, Scene};
 use citylights::sources::{Overrides, open};
@@ -21,7 +21,7 @@ fn there_and_back(name: &str) -> [Parts; 2] {
     let scene = open(&recipe, &Overrides { resolution: Some((64, 36)), ..Overrides::default() }).expect(name);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("scene.glb");
-    export(&scene, Target::Gltf, &file).and_then(|export| export.write()).expect(name);
+    export(&scene, Renderer::Gltf, &file).and_then(|export| export.write()).expect(name);
     let back = open(&file, &Overrides::default()).expect(name);
     [scene, back].map(|scene| in_order(scene.parts()))
 }

@@ -1,7 +1,7 @@
 //! Promise: the shipped scenes are what the README says, and look like cities at night.
 #![cfg(all(feature = "recipe", feature = "measure"))]
 
-use citylights::measure::inspect::{Inspection, inspect};
+use citylights::inspect::{Inspection, inspect};
 use citylights::scene::Scene;
 use citylights::scene::light::Kind;
 use citylights::scene::needs::Needs;

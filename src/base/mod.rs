@@ -4,7 +4,7 @@
 pub mod colour;
 pub mod counts;
 pub mod discrete;
-pub mod double;
+pub mod double_double;
 pub mod draws;
 pub mod error;
 pub mod file;

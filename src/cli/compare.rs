@@ -12,12 +12,12 @@ use crate::base::error::{Error, Result};
 use crate::measure::clock::Cpu;
 use crate::measure::compare::{Compared, Options, compare};
 use crate::measure::engine::Engine;
-use crate::measure::environment;
-use crate::measure::films::Films;
+use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
 use crate::measure::reference::{WORK_S, scene_hash};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
+use crate::record::environment;
 use crate::record::store::{self, RowWriter, file_name, write_run};
 use crate::record::{Kind, Machine, ResultFolder, Row, RunRecord, SCHEMA};
 use crate::report;
@@ -130,7 +130,7 @@ struct Session {
     folder: ResultFolder,
     record: RunRecord,
     rows: RowWriter,
-    films: Films,
+    films: ImageStore,
     /// Rows of an interrupted comparison that is being resumed.
     before: Vec<Row>,
 }
@@ -148,7 +148,7 @@ impl Session {
             }
         };
         std::fs::create_dir_all(&arguments.cache).map_err(Error::io("create", &arguments.cache))?;
-        let films = Films::of(folder.path(), &record.plan);
+        let films = ImageStore::of(folder.path(), &record.plan);
         match store::begun(folder.path(), &record)? {
             Some(earlier) if earlier.finished => {
                 // Left by one that was killed at its very end.

@@ -4,7 +4,7 @@ use super::outcome::Outcome;
 use super::output::check_folder;
 use super::scene::SceneOptions;
 use super::terminal::{print, say};
-use crate::export::{Target, export};
+use crate::export::{Renderer, export};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ pub(super) struct Arguments {
     scene: PathBuf,
     /// The format: gltf (.glb, or .gltf with its buffer embedded), pbrt (.pbrt), mitsuba (.xml and a folder beside it)
     #[arg(long, value_name = "FORMAT", value_parser = target)]
-    to: Target,
+    to: Renderer,
     /// The file; one that is there is replaced
     #[arg(long, short)]
     output: PathBuf,
@@ -41,6 +41,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn target(text: &str) -> Result<Target, String> {
-    Target::named(text).map_err(|error| error.to_string())
+fn target(text: &str) -> Result<Renderer, String> {
+    Renderer::named(text).map_err(|error| error.to_string())
 }

@@ -4,7 +4,7 @@ use super::outcome::Outcome;
 use super::scene::SceneOptions;
 use super::terminal::print;
 use super::threads::{pool, threads};
-use crate::measure::inspect::{Inspection, Part, inspect};
+use crate::inspect::{Inspection, Part, inspect};
 use clap::Args;
 
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};

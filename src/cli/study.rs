@@ -8,7 +8,7 @@ use super::terminal::{print, say};
 use super::threads::{pool, threads};
 use super::values::{resolution, seconds};
 use crate::base::error::Error;
-use crate::measure::environment;
+use crate::record::environment;
 use crate::record::{Kind, ResultFolder};
 use crate::report;
 use crate::sources::Overrides;

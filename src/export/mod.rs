@@ -6,7 +6,7 @@
 //!
 //! | question | where |
 //! |---|---|
-//! | for which renderers? | [`Target`] |
+//! | for which renderers? | [`Renderer`] |
 //! | how is a scene exported? | [`export`] |
 //! | what comes of it, and how does it get to disk? | [`Export`] |
 //! | what does each format say? | `gltf`, `pbrt`, `mitsuba` with `serialized` |
@@ -14,17 +14,17 @@
 //! | what is a spot's cone where edges have another profile? | `cone` |
 //! | how do numbers and names read back as the same? | `text` |
 
-mod by_target;
+mod by_renderer;
 mod cone;
 mod files;
 mod gltf;
 mod meshes;
 mod mitsuba;
 mod pbrt;
+mod renderer;
 mod serialized;
-mod target;
 mod text;
 
-pub use by_target::export;
+pub use by_renderer::export;
 pub use files::Export;
-pub use target::Target;
+pub use renderer::Renderer;

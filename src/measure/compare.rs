@@ -3,9 +3,9 @@
 use super::curve::Curve;
 use super::errors::Truth;
 use super::experiment::{Experiment, Found, Keep, Runs};
-use super::films::Films;
 use super::gate::Gate;
 use super::headline::{self, Entry, Headline};
+use super::image_store::ImageStore;
 use super::observer::Observer;
 use super::oracle;
 use super::plan::{self, Pilot};
@@ -215,7 +215,7 @@ fn record(
 /// Rows and images of one scene in a result folder.
 struct Folder<'a> {
     scene: &'a str,
-    films: &'a Films,
+    films: &'a ImageStore,
     before: &'a [Row],
     rows: &'a mut RowWriter,
     receivers: usize,

@@ -1,7 +1,7 @@
 //! How is a comparison done?
 
 use super::engine::Engine;
-use super::films::Films;
+use super::image_store::ImageStore;
 use super::plan::Budget;
 use crate::strategy::Configured;
 use std::path::Path;
@@ -25,5 +25,5 @@ pub struct Options<'a> {
     /// Folder of cached references.
     pub cache: &'a Path,
     /// Where the last image of each finished run is kept.
-    pub films: &'a Films,
+    pub films: &'a ImageStore,
 }

@@ -15,8 +15,8 @@ use crate::image::exr;
 use crate::measure::curve::Curve;
 use crate::measure::errors::Truth;
 use crate::measure::experiment::Runs;
-use crate::measure::films::Films;
 use crate::measure::headline::Entry;
+use crate::measure::image_store::ImageStore;
 use crate::measure::observer::Observer;
 use crate::measure::summary::summarise;
 use crate::measure::target::Target;
@@ -45,7 +45,7 @@ pub struct Options<'a> {
     /// The result folder, a marked one.
     pub folder: &'a Path,
     /// Where the last image of each finished run is kept.
-    pub films: &'a Films,
+    pub films: &'a ImageStore,
     /// How long a script may say nothing.
     pub patience: Duration,
 }
@@ -62,7 +62,7 @@ pub struct Measured {
 }
 
 /// Runs peers on the scene of a target. `truth` is that at its measured receivers. Rows go to `writer` as they come; `before` holds those of
-/// finished runs, which are not repeated: runs whose image is kept (see [`Films`]).
+/// finished runs, which are not repeated: runs whose image is kept (see [`ImageStore`]).
 ///
 /// Fails only where the result folder cannot be written or the user wants to stop.
 pub fn measure(

@@ -14,7 +14,7 @@ mod script;
 
 use crate::base::error::{Error, Result};
 use crate::base::names;
-use crate::export::Target as Format;
+use crate::export::Renderer as Format;
 use crate::strategy::Arguments;
 
 /// A renderer that can be named.

@@ -7,6 +7,7 @@
 //!
 //! | question | where |
 //! |---|---|
+//! | where and by what is it measured? | [`environment`] |
 //! | what was run, by what, where? | [`RunRecord`], [`Program`], [`Machine`] |
 //! | what is known of a scene? | [`SceneRecord`] |
 //! | what of a strategy on it, after all runs, and how far off may it be? | [`Summary`], [`Interval`] |
@@ -18,6 +19,7 @@
 //! | which version of which files is it? | [`SCHEMA`], `files` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
+pub mod environment;
 mod files;
 pub mod folder;
 pub mod interval;

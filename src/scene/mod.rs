@@ -3,7 +3,7 @@
 //! Coordinates are f32 metres relative to an f64 [`Scene::origin`], +z up. Units are photometric.
 
 pub mod camera;
-pub mod influence;
+pub mod cutoff;
 pub mod light;
 pub mod light_sampling;
 pub mod needs;

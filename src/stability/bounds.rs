@@ -3,7 +3,7 @@
 use super::tally::{Finding, Tally, relative};
 use super::triangles::{direction, magnitude, point};
 use crate::base::discrete::Cumulative;
-use crate::base::double::Double;
+use crate::base::double_double::DoubleDouble;
 use crate::base::random::Stream;
 use crate::scene::light::{Light, Shape};
 use crate::scene::receiver::Receiver;
@@ -80,9 +80,9 @@ pub(super) fn variance() -> Finding {
         let near = magnitude(&mut stream, -3.0, 6.0) as f32;
         let far = (near + magnitude(&mut stream, -2.0, 3.0) as f32).max(near.next_up());
         // E[g^2] / E[g]^2 - 1, with E[g] = 1 / (a b) and E[g^2] = (a^2 + a b + b^2) / (3 a^3 b^3).
-        let (a, b) = (Double::from(f64::from(near)), Double::from(f64::from(far)));
+        let (a, b) = (DoubleDouble::from(f64::from(near)), DoubleDouble::from(f64::from(far)));
         let product = a * b;
-        let exact = ((a * a + product + b * b).over(Double::from(3.0) * product) - Double::from(1.0)).high;
+        let exact = ((a * a + product + b * b).over(DoubleDouble::from(3.0) * product) - DoubleDouble::from(1.0)).high;
         let found = relative_variance(f64::from(near), f64::from(far));
         ours.add_positive(found, relative(found, exact));
         let mean = 1.0 / (near * far);

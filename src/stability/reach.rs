@@ -5,7 +5,7 @@ use super::tally::{Finding, Tally, relative};
 use super::triangles::{direction, magnitude, point};
 use crate::base::random::Stream;
 use crate::scene::Scene;
-use crate::scene::influence::{Cutoff, Transfer};
+use crate::scene::cutoff::{Cutoff, Transfer};
 use crate::scene::light::{Light, Shape};
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;

@@ -9,7 +9,7 @@ use crate::base::error::Result;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
-use crate::visibility::influence::InfluenceTree;
+use crate::visibility::influence_tree::InfluenceTree;
 
 /// Takes every light in range, one point each.
 pub struct Influence {

@@ -15,7 +15,7 @@ use super::parts::range::Range;
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::Scene;
-use crate::scene::influence::Cutoff;
+use crate::scene::cutoff::Cutoff;
 use crate::scene::light::{Light, LightId};
 use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};

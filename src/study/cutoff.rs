@@ -20,7 +20,7 @@ use crate::record::study::{Cell, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::render::exact::exact;
 use crate::scene::camera::Camera;
-use crate::scene::influence::{Cutoff, Transfer};
+use crate::scene::cutoff::{Cutoff, Transfer};
 use crate::scene::receiver::Receiver;
 use crate::scene::{Parts, Scene};
 use crate::sources::city::{self, Buildings, City, Grown, LampKind, Lamps};

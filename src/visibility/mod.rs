@@ -1,7 +1,7 @@
 //! What can be seen from where: occluders and shadow rays, the points that the camera sees, the lights in range.
 
 mod bvh;
-pub mod influence;
+pub mod influence_tree;
 pub mod occluders;
 pub mod offset;
 pub mod reach;

@@ -10,7 +10,7 @@
 use super::bvh::{self, Asked};
 use crate::base::random::Stream;
 use crate::scene::Scene;
-use crate::scene::influence::{Cutoff, Influence};
+use crate::scene::cutoff::{Cutoff, Influence};
 use crate::scene::light::LightId;
 use glam::Vec3;
 use obvhs::bvh2::Bvh2;

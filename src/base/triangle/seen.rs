@@ -1,7 +1,7 @@
 //! How large does a triangle look?
 
 use super::angles::arctan2;
-use crate::base::double::Double;
+use crate::base::double_double::DoubleDouble;
 use glam::DVec3;
 
 /// A triangle as a receiver sees it that is at the origin.
@@ -92,16 +92,17 @@ fn angle_of_more_digits(corners: [DVec3; 3]) -> f64 {
 #[cold]
 #[inline(never)]
 fn tangent_of_more_digits(corners: [DVec3; 3]) -> (f64, f64) {
-    let [a, b, c] = corners.map(|corner| corner.to_array().map(Double::from));
-    let minus = |p: [Double; 3], q: [Double; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let triple = Double::dot(a, Double::cross(minus(b, a), minus(c, a))).high;
+    let [a, b, c] = corners.map(|corner| corner.to_array().map(DoubleDouble::from));
+    let minus = |p: [DoubleDouble; 3], q: [DoubleDouble; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let triple = DoubleDouble::dot(a, DoubleDouble::cross(minus(b, a), minus(c, a))).high;
     // Exactly in the plane, or no triangle at all: there is no side to see it from.
     if triple == 0.0 {
         return (0.0, 0.0);
     }
-    let length = |p| Double::dot(p, p).sqrt();
+    let length = |p| DoubleDouble::dot(p, p).sqrt();
     let (la, lb, lc) = (length(a), length(b), length(c));
-    let denominator = la * lb * lc + Double::dot(a, b) * lc + Double::dot(a, c) * lb + Double::dot(b, c) * la;
+    let denominator =
+        la * lb * lc + DoubleDouble::dot(a, b) * lc + DoubleDouble::dot(a, c) * lb + DoubleDouble::dot(b, c) * la;
     (triple, denominator.high)
 }
 
@@ -124,8 +125,8 @@ pub(super) fn edge_normal(a: DVec3, b: DVec3, la: f64, lb: f64) -> DVec3 {
 /// `a×b`, each component to 16 digits of the vector's length.
 #[cold]
 fn normal_of_more_digits(a: DVec3, b: DVec3) -> DVec3 {
-    let wide = |p: DVec3| p.to_array().map(Double::from);
-    DVec3::from_array(Double::cross(wide(a), wide(b)).map(|component| component.high))
+    let wide = |p: DVec3| p.to_array().map(DoubleDouble::from);
+    DVec3::from_array(DoubleDouble::cross(wide(a), wide(b)).map(|component| component.high))
 }
 
 /// `|a||b| + a·b`: 0 for corners on opposite sides of the receiver, and of all digits there too. `normal` is `a×b`.

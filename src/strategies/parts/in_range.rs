@@ -9,7 +9,7 @@ use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
 use crate::strategy::{BuildContext, LightSampler, Picks, Tally};
-use crate::visibility::influence::InfluenceTree;
+use crate::visibility::influence_tree::InfluenceTree;
 use std::sync::Arc;
 
 /// The hierarchy that lists the lights in range of a receiver, and the number of picks among them.

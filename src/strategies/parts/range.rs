@@ -2,9 +2,9 @@
 
 use crate::base::error::Result;
 use crate::scene::Scene;
-use crate::scene::influence::{Cutoff, Transfer};
+use crate::scene::cutoff::{Cutoff, Transfer};
 use crate::strategy::{Arguments, BuildContext};
-use crate::visibility::influence::InfluenceTree;
+use crate::visibility::influence_tree::InfluenceTree;
 
 /// The cut-off as two parameters, shared by the strategies that have one.
 pub(in crate::strategies) struct Range {

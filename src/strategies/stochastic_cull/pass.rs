@@ -7,12 +7,12 @@ use super::sink::Sink;
 use crate::base::draws::{Draws, Sequence};
 use crate::base::random::{RunKey, hash};
 use crate::scene::Scene;
-use crate::scene::influence::Influence;
+use crate::scene::cutoff::Influence;
 use crate::scene::receiver::Receiver;
 use crate::strategies::parts::range::Range;
 use crate::strategies::parts::reservoir::Reservoir;
 use crate::strategy::{BuildContext, Frame, FrameSampler, LightSampler, Picks, Tally};
-use crate::visibility::influence::InfluenceTree;
+use crate::visibility::influence_tree::InfluenceTree;
 use crate::visibility::roulette::chance;
 use std::sync::Arc;
 

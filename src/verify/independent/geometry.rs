@@ -100,16 +100,16 @@ impl<'a> Geometry<'a> {
     }
 
     /// Whether nothing stands between a place and a target: a point, or a direction towards what is infinitely far.
-    pub(super) fn free(&self, place: &Place, target: Target) -> bool {
+    pub(super) fn free(&self, place: &Place, target: Towards) -> bool {
         self.free_beside(place, target, DVec3::ZERO, DVec3::ZERO)
     }
 
     /// Whether a ray that starts or ends a hair's breadth beside meets with another fate: then it passes an edge.
-    pub(super) fn is_silhouette(&self, place: &Place, target: Target) -> bool {
+    pub(super) fn is_silhouette(&self, place: &Place, target: Towards) -> bool {
         let hair = 1e-3 + 1e-6 * self.size;
         let along = match target {
-            Target::Point(point) => (point - place.met).normalize_or_zero(),
-            Target::Direction(direction) => direction,
+            Towards::Point(point) => (point - place.met).normalize_or_zero(),
+            Towards::Direction(direction) => direction,
         };
         let (a, b) = along.any_orthonormal_pair();
         let (s, t) = place.normal.any_orthonormal_pair();
@@ -119,16 +119,16 @@ impl<'a> Geometry<'a> {
         starts.into_iter().chain(ends).any(|(start, end)| self.free_beside(place, target, start, end) != usual)
     }
 
-    fn free_beside(&self, place: &Place, target: Target, start: DVec3, end: DVec3) -> bool {
+    fn free_beside(&self, place: &Place, target: Towards, start: DVec3, end: DVec3) -> bool {
         // Corners are rounded to half a 16-millionth of a coordinate: neighbours in one plane are so far apart.
         let skin = 1e-6 * (1.0 + self.size);
         let origin = place.met + place.normal * skin + start;
         let (along, last) = match target {
-            Target::Point(point) => {
+            Towards::Point(point) => {
                 let along = point + end - origin;
                 (along, 1.0 - skin / along.length())
             }
-            Target::Direction(direction) => (direction, f64::INFINITY),
+            Towards::Direction(direction) => (direction, f64::INFINITY),
         };
         let blocks = |(triangle, i): (&[DVec3; 3], u32)| {
             i != place.surface && meet(triangle, origin, along).is_some_and(|t| t > 0.0 && t < last)
@@ -139,7 +139,7 @@ impl<'a> Geometry<'a> {
 
 /// Where light comes from.
 #[derive(Clone, Copy)]
-pub(super) enum Target {
+pub(super) enum Towards {
     Point(DVec3),
     Direction(DVec3),
 }

@@ -3,7 +3,7 @@
 //! `albedo / pi` times the irradiance: directional `E (n.w)`, point `I (n.w) / d^2`, spot the same times the squared
 //! linear ramp of `KHR_lights_punctual`, triangle `L A (n.w)(n_l.-w) / d^2` for a point that stands for all its area.
 
-use super::geometry::{Place, Target};
+use super::geometry::{Place, Towards};
 use crate::scene::light::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
@@ -18,7 +18,7 @@ pub(super) struct Arriving {
     /// How far f32 may be off it.
     pub(super) rounding: DVec3,
     /// Where it comes from.
-    pub(super) from: Target,
+    pub(super) from: Towards,
 }
 
 /// A cosine-like factor that is 0 below 0, and how far off it may be.
@@ -56,10 +56,10 @@ pub(super) fn unshadowed(light: &Light, uv: [f64; 2], at: &Place) -> Arriving {
     let full = Factor { value: 1.0, off: 0.0 };
     // Where it comes from, from which numbers of which size, by which colour, and what else weakens it.
     let (from, reach, colour, factor) = match light.shape() {
-        Shape::Directional { towards, irradiance } => (Target::Direction(towards.as_dvec3()), 1.0, irradiance, full),
+        Shape::Directional { towards, irradiance } => (Towards::Direction(towards.as_dvec3()), 1.0, irradiance, full),
         Shape::Point { position, intensity } => {
             let position = position.as_dvec3();
-            (Target::Point(position), sum(position - at.position), intensity, full)
+            (Towards::Point(position), sum(position - at.position), intensity, full)
         }
         Shape::Spot { position, axis, intensity, cos_inner, cos_outer } => {
             let position = position.as_dvec3();
@@ -69,7 +69,7 @@ pub(super) fn unshadowed(light: &Light, uv: [f64; 2], at: &Place) -> Arriving {
             // Cosines of rounded vectors, and products with a scale that cancel.
             let most = ramp + 16.0 * UNIT / (inner - outer);
             let profile = Factor { value: ramp * ramp, off: most * most - ramp * ramp };
-            (Target::Point(position), sum(position - at.position), intensity, profile)
+            (Towards::Point(position), sum(position - at.position), intensity, profile)
         }
         Shape::Triangle { radiance, .. } => {
             let (point, [p, q, r]) = (point(light, uv), corners(light));
@@ -78,12 +78,12 @@ pub(super) fn unshadowed(light: &Light, uv: [f64; 2], at: &Place) -> Arriving {
             let facing = -0.5 * a.cross(b).dot(to) / to.length();
             // The normal is a product of rounded edges.
             let off = 8.0 * UNIT * a.length() * b.length() * to_corner.length() / to.length();
-            (Target::Point(point), sum(to_corner) + sum(a) + sum(b), radiance, Factor { value: facing, off })
+            (Towards::Point(point), sum(to_corner) + sum(a) + sum(b), radiance, Factor { value: facing, off })
         }
     };
     let (towards, distance) = match from {
-        Target::Point(point) => ((point - at.position).normalize_or_zero(), (point - at.position).length()),
-        Target::Direction(direction) => (direction, 1.0),
+        Towards::Point(point) => ((point - at.position).normalize_or_zero(), (point - at.position).length()),
+        Towards::Direction(direction) => (direction, 1.0),
     };
     let cosine = Factor { value: at.normal.dot(towards), off: 8.0 * UNIT * reach / distance };
     let reflected = colour.as_dvec3() * at.albedo * FRAC_1_PI / (distance * distance);

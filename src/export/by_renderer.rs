@@ -1,18 +1,18 @@
 //! Which of the formats makes the files that a target asks for?
 
 use super::files::Export;
-use super::target::Target;
+use super::renderer::Renderer;
 use super::{gltf, mitsuba, pbrt};
 use crate::base::error::Result;
 use crate::scene::Scene;
 use std::path::Path;
 
 /// The scene as files of `target`, the main one at `file`; the same scene and name give the same bytes.
-pub fn export(scene: &Scene, target: Target, file: &Path) -> Result<Export> {
+pub fn export(scene: &Scene, target: Renderer, file: &Path) -> Result<Export> {
     target.check(file)?;
     match target {
-        Target::Gltf => gltf::export(scene, file),
-        Target::Pbrt => Ok(pbrt::export(scene, file)),
-        Target::Mitsuba => mitsuba::export(scene, file),
+        Renderer::Gltf => gltf::export(scene, file),
+        Renderer::Pbrt => Ok(pbrt::export(scene, file)),
+        Renderer::Mitsuba => mitsuba::export(scene, file),
     }
 }

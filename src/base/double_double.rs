@@ -1,6 +1,6 @@
 //! What is a sum of products when f64 has too few digits?
 //!
-//! A [`Double`] is the unevaluated sum of two f64 numbers: 31 decimal digits, twenty times the price. For the rare case
+//! A [`DoubleDouble`] is the unevaluated sum of two f64 numbers: 31 decimal digits, twenty times the price. For the rare case
 //! that cancels, and for checks.
 //!
 //! Source: Dekker, Numerische Mathematik 18, 1971; Knuth, The Art of Computer Programming 2, 4.2.2, for the sum.
@@ -9,7 +9,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number as `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Double {
+pub struct DoubleDouble {
     /// The number, rounded to f64.
     pub high: f64,
     /// What is missing.
@@ -18,17 +18,17 @@ pub struct Double {
 
 /// The sum of two numbers and what it lacks.
 #[inline]
-fn sum(a: f64, b: f64) -> Double {
+fn sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let part = high - a;
-    Double { high, low: (a - (high - part)) + (b - part) }
+    DoubleDouble { high, low: (a - (high - part)) + (b - part) }
 }
 
 /// The same for `|a| >= |b|`.
 #[inline]
-fn sum_ordered(a: f64, b: f64) -> Double {
+fn sum_ordered(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
-    Double { high, low: b - (high - a) }
+    DoubleDouble { high, low: b - (high - a) }
 }
 
 /// A number's upper 26 bits and its lower ones.
@@ -41,13 +41,13 @@ fn halves(a: f64) -> (f64, f64) {
 
 /// The product of two numbers and what it lacks.
 #[inline]
-fn product(a: f64, b: f64) -> Double {
+fn product(a: f64, b: f64) -> DoubleDouble {
     let high = a * b;
     let ((au, al), (bu, bl)) = (halves(a), halves(b));
-    Double { high, low: al * bl - (((high - au * bu) - al * bu) - au * bl) }
+    DoubleDouble { high, low: al * bl - (((high - au * bu) - al * bu) - au * bl) }
 }
 
-impl Double {
+impl DoubleDouble {
     /// The square root; 0 of what is not positive.
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
@@ -80,39 +80,39 @@ impl Double {
     }
 }
 
-impl From<f64> for Double {
+impl From<f64> for DoubleDouble {
     fn from(high: f64) -> Self {
         Self { high, low: 0.0 }
     }
 }
 
-impl Neg for Double {
+impl Neg for DoubleDouble {
     type Output = Self;
     fn neg(self) -> Self {
         Self { high: -self.high, low: -self.low }
     }
 }
 
-impl Add for Double {
+impl Add for DoubleDouble {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let (high, low) = (sum(self.high, other.high), sum(self.low, other.low));
-        let Double { high, low: rest } = sum_ordered(high.high, high.low + low.high);
+        let DoubleDouble { high, low: rest } = sum_ordered(high.high, high.low + low.high);
         sum_ordered(high, rest + low.low)
     }
 }
 
-impl Sub for Double {
+impl Sub for DoubleDouble {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Double {
+impl Mul for DoubleDouble {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let Double { high, low } = product(self.high, other.high);
+        let DoubleDouble { high, low } = product(self.high, other.high);
         sum_ordered(high, low + (self.high * other.low + self.low * other.high))
     }
 }
@@ -124,22 +124,22 @@ mod tests {
     #[test]
     fn digits_beyond_f64_survive() {
         let tiny = 2f64.powi(-80);
-        let number = Double::from(1.0) + tiny.into();
+        let number = DoubleDouble::from(1.0) + tiny.into();
         assert_eq!((number - 1.0.into()).high, tiny);
         // (1 + e)(1 - e) - 1 = -e^2
         let e = 2f64.powi(-50);
-        let cancelled = Double::from(1.0 + e) * (1.0 - e).into() - 1.0.into();
+        let cancelled = DoubleDouble::from(1.0 + e) * (1.0 - e).into() - 1.0.into();
         assert_eq!(cancelled.high, -e * e);
     }
 
     #[test]
     fn roots_and_quotients_come_back() {
         for value in [2.0, 3e-40, 7.7e55, 1.0 / 3.0] {
-            let root = Double::from(value).sqrt();
+            let root = DoubleDouble::from(value).sqrt();
             assert!(((root * root - value.into()).high / value).abs() < 1e-31, "{value}");
-            let third = Double::from(value).over(3.0.into());
+            let third = DoubleDouble::from(value).over(3.0.into());
             assert!(((third * 3.0.into() - value.into()).high / value).abs() < 1e-31, "{value}");
         }
-        assert_eq!(Double::from(0.0).sqrt(), Double::default());
+        assert_eq!(DoubleDouble::from(0.0).sqrt(), DoubleDouble::default());
     }
 }

@@ -1,16 +1,16 @@
 //! What is in a scene, does it look like a city at night, and what can be left out of it?
 
-use super::reference::scene_hash;
-use super::target::spread;
 use crate::base::colour::luminance;
 use crate::base::statistics::quantile;
 use crate::base::triangle::CENTROID;
+use crate::measure::reference::scene_hash;
+use crate::measure::target::spread;
 use crate::render::exact::{exact, shadowed};
-use crate::scene::influence::{Cutoff, Transfer};
+use crate::scene::cutoff::{Cutoff, Transfer};
 use crate::scene::light::{Kind, Light, LightId};
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
-use crate::visibility::influence::InfluenceTree;
+use crate::visibility::influence_tree::InfluenceTree;
 use crate::visibility::stage::Stage;
 use crate::visibility::view::Seen;
 use glam::Vec3;

@@ -19,12 +19,12 @@ const HASH: usize = blake3::OUT_LEN;
 const EXTENSION: &str = ".film";
 
 /// The films of a result folder; removed when the comparison has ended.
-pub struct Films {
+pub struct ImageStore {
     folder: PathBuf,
     plan: String,
 }
 
-impl Films {
+impl ImageStore {
     /// The films in a result folder of a comparison by `plan`, which names the content of its scenes.
     pub fn of(results: &Path, plan: &str) -> Self {
         Self { folder: results.join("films"), plan: plan.to_owned() }
@@ -100,16 +100,16 @@ mod tests {
     #[test]
     fn a_film_is_of_one_plan_run_and_budget() {
         let folder = tempfile::tempdir().expect("a folder");
-        let films = Films::of(folder.path(), "scenes town=1");
+        let films = ImageStore::of(folder.path(), "scenes town=1");
         let image = [Vec3::new(1.0, 2.0, 3.0), Vec3::ONE];
         films.save(&row(0, 64), &image).expect("saved");
         assert_eq!(films.load(&row(0, 64), 2).as_deref(), Some(&image[..]));
         assert_eq!(films.load(&row(0, 64), 3), None);
         // Another's film under this one's name.
         for (other, of) in [
-            (Films::of(folder.path(), "scenes town=1"), row(1, 64)),
-            (Films::of(folder.path(), "scenes town=1"), row(0, 16)),
-            (Films::of(folder.path(), "scenes town=2"), row(0, 64)),
+            (ImageStore::of(folder.path(), "scenes town=1"), row(1, 64)),
+            (ImageStore::of(folder.path(), "scenes town=1"), row(0, 16)),
+            (ImageStore::of(folder.path(), "scenes town=2"), row(0, 64)),
         ] {
             other.save(&of, &image).expect("saved");
             std::fs::rename(other.path(&of), films.path(&row(0, 64))).expect("renamed");
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn no_byte_of_a_film_can_change_unseen() {
         let folder = tempfile::tempdir().expect("a folder");
-        let films = Films::of(folder.path(), "plan");
+        let films = ImageStore::of(folder.path(), "plan");
         films.save(&row(0, 1), &[Vec3::ONE; 2]).expect("saved");
         let path = films.path(&row(0, 1));
         let whole = std::fs::read(&path).expect("read");
@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn only_films_are_removed() {
         let folder = tempfile::tempdir().expect("a folder");
-        let films = Films::of(folder.path(), "plan");
+        let films = ImageStore::of(folder.path(), "plan");
         films.remove().expect("nothing to remove");
         films.save(&row(0, 1), &[Vec3::ONE]).expect("saved");
         let holiday = folder.path().join("films/holiday.mkv");

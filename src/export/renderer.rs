@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// What a scene can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
+pub enum Renderer {
     /// glTF 2.0: `.glb`, or `.gltf` with its buffer embedded; for Blender and most others.
     Gltf,
     /// pbrt-v4: one `.pbrt` file.
@@ -15,7 +15,7 @@ pub enum Target {
     Mitsuba,
 }
 
-impl Target {
+impl Renderer {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Gltf, Self::Pbrt, Self::Mitsuba];
 
