@@ -24,7 +24,10 @@ pub struct AliasTable {
 }
 
 impl AliasTable {
-    /// A table over `weights`; at least one must be positive, none negative or NaN.
+    /// A table over `weights`, which need not add up to 1.
+    ///
+    /// # Errors
+    /// No weights, or only 0; a weight that is negative, infinite or no number.
     pub fn new(weights: &[f64]) -> Result<Self> {
         let n = weights.len();
         let total: f64 = weights.iter().sum();

@@ -8,7 +8,10 @@ use std::path::{Path, PathBuf};
 /// Writes `bytes` to `path`, replacing what was there.
 ///
 /// The bytes go to a hidden file in the same folder first, which takes the name once it is on disk: a reader, or a run
-/// that dies half-way, never sees a part. Errors name `path`.
+/// that dies half-way, never sees a part.
+///
+/// # Errors
+/// A path that names no file, or a file that cannot be written; the error names `path`.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write_together(&[(path.to_owned(), bytes)])
 }
@@ -16,6 +19,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
 /// Writes files that belong together, replacing what was there: none takes its name before all are on disk.
 ///
 /// The last one should be the one that names the others.
+///
+/// # Errors
+/// A path that names no file, or a file that cannot be written.
 pub fn write_together(files: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<()> {
     let mut partials = Vec::new();
     let written = files.iter().try_for_each(|(path, bytes)| {
@@ -62,6 +68,9 @@ fn partial(path: &Path) -> Result<PathBuf> {
 }
 
 /// Removes what runs that died half-way through [`write_whole`] left in a folder that nobody else writes in.
+///
+/// # Errors
+/// A folder that cannot be read; a file of theirs that cannot be removed.
 pub fn remove_partials(folder: &Path) -> Result<()> {
     for entry in fs::read_dir(folder).map_err(Error::io("read", folder))? {
         let path = entry.map_err(Error::io("read", folder))?.path();

@@ -8,6 +8,9 @@ use crate::scene::Scene;
 use std::path::Path;
 
 /// The scene as files of `target`, the main one at `file`; the same scene and name give the same bytes.
+///
+/// # Errors
+/// A name that `target` does not use or cannot hold; for glTF, a light beyond 2^127 or a `.glb` beyond 4 GiB.
 pub fn export(scene: &Scene, target: Renderer, file: &Path) -> Result<Export> {
     target.check(file)?;
     match target {

@@ -19,6 +19,9 @@ pub struct Export {
 impl Export {
     /// Writes all files; none that was there is replaced before all are on disk, and the one that names the others is
     /// replaced last.
+    ///
+    /// # Errors
+    /// A folder that cannot be made; a file that cannot be written.
     pub fn write(&self) -> Result<()> {
         if let Some(folder) = self.files.first().and_then(|(path, _)| path.parent())
             && self.files.len() > 1

@@ -28,7 +28,10 @@ impl Renderer {
         }
     }
 
-    /// The target of a name; an unknown one is an [`Error::Unknown`].
+    /// The target of a name.
+    ///
+    /// # Errors
+    /// An unknown name is an [`Error::Unknown`].
     pub fn named(text: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(|| Error::Unknown {
             what: "format",
@@ -47,6 +50,9 @@ impl Renderer {
     }
 
     /// Refuses a file name whose extension is another format's, before the work instead of after it.
+    ///
+    /// # Errors
+    /// An extension that is none of this format's, or none at all.
     pub fn check(self, file: &Path) -> Result<()> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if self.extensions().contains(&&*extension) {

@@ -10,6 +10,9 @@ use std::path::Path;
 /// Reads a picture in the format that the extension of `path` names.
 ///
 /// EXR gives its numbers as they are, PNG its displayed values, `[0, 1]`, with the sRGB curve undone.
+///
+/// # Errors
+/// An extension that is neither `.png` nor `.exr`; a file that cannot be opened, is damaged or too large.
 pub fn read(path: &Path) -> Result<Picture> {
     match Format::of(path)? {
         Format::Png => png::read(path),
@@ -21,6 +24,10 @@ pub fn read(path: &Path) -> Result<Picture> {
 ///
 /// `exposure` (display units per unit of the picture) is for PNG alone: EXR keeps the numbers as they are. Gives the
 /// number of pixels that are not finite: magenta in a PNG, kept in an EXR.
+///
+/// # Errors
+/// An extension that is neither `.png` nor `.exr`; a picture without pixels, or with another number of them than its
+/// sides say; a file that cannot be written.
 pub fn write(path: &Path, picture: &Picture, exposure: f32) -> Result<usize> {
     let bytes = match Format::of(path)? {
         Format::Png => png::encode(picture, exposure)?,

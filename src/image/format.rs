@@ -14,6 +14,9 @@ pub enum Format {
 
 impl Format {
     /// The format that the extension of `path` names; a caller asks before the work, not after it.
+    ///
+    /// # Errors
+    /// An extension that is neither `.png` nor `.exr`, or none at all.
     pub fn of(path: &Path) -> Result<Self> {
         match path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase().as_str() {
             "png" => Ok(Self::Png),

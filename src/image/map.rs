@@ -58,6 +58,9 @@ impl Scale {
 impl Map<'_> {
     /// Writes the map whole or not at all: colours to a PNG (grey where a pixel is left out), the values themselves to
     /// the three channels of an EXR (NaN there).
+    ///
+    /// # Errors
+    /// An extension that is neither `.png` nor `.exr`; a map without pixels; a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         let pixels = self.values.iter().zip(self.counted);
         let bytes = match Format::of(path)? {

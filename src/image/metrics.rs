@@ -37,7 +37,8 @@ pub struct Errors {
 impl Pair {
     /// The test picture beside the reference; `mask` is not 0 where a pixel is left out.
     ///
-    /// All have the same size, and one pixel at least counts.
+    /// # Errors
+    /// Pictures of different sizes; a mask and values that are not finite which leave no pixel.
     pub fn new(reference: &Picture, test: &Picture, mask: Option<&Picture>) -> Result<Self> {
         let size = |picture: &Picture| (picture.width, picture.height);
         for (name, other) in [("test", Some(test)), ("mask", mask)] {

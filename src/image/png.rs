@@ -17,6 +17,9 @@ const MAGENTA: [u8; 3] = [255, 0, 255];
 /// bits.
 ///
 /// A pixel with a component that is NaN or infinite becomes magenta. The same picture gives the same bytes.
+///
+/// # Errors
+/// A picture without pixels, or with another number of them than its sides say.
 pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
     picture.check()?;
     let texels: Vec<[u8; 3]> = picture.pixels.iter().map(|pixel| texel(*pixel, exposure)).collect();
@@ -24,6 +27,9 @@ pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
 }
 
 /// The bytes of a PNG file of these 8-bit sRGB colours, row by row from the top.
+///
+/// # Errors
+/// A picture without pixels.
 pub fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)
@@ -35,6 +41,7 @@ pub fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<
 /// Reads a PNG file of 8 or 16 bits, in colour or grey, as linear values in `[0, 1]`; it is taken to be sRGB, and its
 /// opacity is ignored.
 ///
+/// # Errors
 /// A file that cannot be opened is [`Error::Io`]; one that is damaged or larger than [`MOST_PIXELS`] is
 /// [`Error::Input`].
 pub fn read(path: &Path) -> Result<Picture> {

@@ -35,6 +35,10 @@ pub struct Compared<'a> {
 
 /// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
 /// repeated.
+///
+/// # Errors
+/// A cache, rows or images that cannot be read or written; a reference whose halves are not independent; the user's
+/// wish to stop. A strategy that fails is an error in its own summary alone.
 pub fn compare<'a>(
     stage: &'a Stage,
     file: &str,

@@ -78,6 +78,9 @@ impl Meter<'_> {
 
 impl Engine<'_> {
     /// Does `work` in a pool of one thread, as a unit is done, while nothing else of this engine runs.
+    ///
+    /// # Errors
+    /// No thread to run on.
     pub fn alone<T: Send>(&self, work: impl FnOnce(Meter<'_>) -> T + Send) -> Result<T> {
         let pool = pool()?;
         Ok(pool.install(|| work(Meter(self.clock))))
@@ -85,7 +88,8 @@ impl Engine<'_> {
 
     /// Does all `units`, each on one worker alone, and hands what they give to `sink` on this thread as it comes.
     ///
-    /// Stops at the first error, of a unit, of `sink` or because the user wants to stop.
+    /// # Errors
+    /// The first error, of a unit or of `sink`, or the user's wish to stop: all stops there. No thread to run on.
     pub fn run<U: Sync, T: Send>(
         &self,
         what: &str,
@@ -172,7 +176,10 @@ pub struct Done {
 }
 
 impl Block<'_> {
-    /// Builds the strategy and does all passes in one block. Fails where the strategy cannot serve the scene.
+    /// Builds the strategy and does all passes in one block.
+    ///
+    /// # Errors
+    /// A strategy that cannot serve the scene.
     pub fn run(&self, meter: Meter<'_>) -> Result<Done> {
         let Self { stage, receivers, strategy, key, passes } = *self;
         let context = BuildContext { stage, seed: build_seed(key) };

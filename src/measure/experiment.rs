@@ -37,8 +37,14 @@ pub type Found = (Row, Option<Vec<Vec3>>);
 /// Where rows and images are kept, so that an interrupted experiment goes on.
 pub trait Keep {
     /// What is kept of a unit. What is there in part only is thrown away: the unit will be done again.
+    ///
+    /// # Errors
+    /// What is kept that cannot be read, or thrown away.
     fn take(&mut self, strategy: &str, run: u32, passes: u32, with_image: bool) -> Result<Option<Found>>;
     /// Keeps what a unit gave.
+    ///
+    /// # Errors
+    /// What cannot be written.
     fn keep(&mut self, found: &Found) -> Result<()>;
 }
 
@@ -85,6 +91,9 @@ struct Unit {
 
 impl Experiment<'_> {
     /// Does what `kept` does not hold; gives the runs of each strategy, and what the units done now took together.
+    ///
+    /// # Errors
+    /// An error of `kept`; the user's wish to stop; no thread to run on. A strategy that fails has rows that say so.
     pub fn run(&self, kept: &mut dyn Keep, watch: &dyn Observer) -> Result<(Vec<Runs>, Account)> {
         let mut found: Vec<Vec<Found>> = self.strategies.iter().map(|_| Vec::new()).collect();
         let mut units = Vec::new();

@@ -46,7 +46,11 @@ impl<'a> Gate<'a> {
         Self { stage, verifier, typed: typed.to_owned(), seed, arithmetic: OnceLock::new() }
     }
 
-    /// An error that names the check that a strategy fails, or its scene: one line, with the command that shows it.
+    /// Looks at a strategy, and once at the arithmetic of its scene.
+    ///
+    /// # Errors
+    /// The check that the strategy fails, or its scene: one line, with the command that shows it. A strategy that
+    /// cannot serve the scene.
     pub fn pass(&self, strategy: &Configured) -> Result<()> {
         let first = |checks: Vec<Check>| checks.into_iter().find(|check| !check.passed);
         let arithmetic = self.arithmetic.get_or_init(|| first(arithmetic(self.stage, self.seed)));

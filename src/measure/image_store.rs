@@ -31,6 +31,9 @@ impl ImageStore {
     }
 
     /// Keeps the image of the run and budget of `row`.
+    ///
+    /// # Errors
+    /// A folder or a file that cannot be written.
     pub fn save(&self, row: &Row, image: &[Vec3]) -> Result<()> {
         std::fs::create_dir_all(&self.folder).map_err(Error::io("create", &self.folder))?;
         let mut bytes = MAGIC.to_vec();
@@ -59,6 +62,9 @@ impl ImageStore {
     }
 
     /// Removes all films; what else somebody has put beside them stays.
+    ///
+    /// # Errors
+    /// A folder that cannot be read; a film or a folder that cannot be removed.
     pub fn remove(&self) -> Result<()> {
         let entries = match std::fs::read_dir(&self.folder) {
             Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),

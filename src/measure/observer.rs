@@ -15,7 +15,10 @@ pub trait Observer: Sync {
         false
     }
 
-    /// An error if the user asked to stop.
+    /// Goes on unless the user asked to stop.
+    ///
+    /// # Errors
+    /// The user's wish to stop.
     fn check(&self) -> Result<()> {
         if self.stopped() { Err(Error::Interrupted) } else { Ok(()) }
     }

@@ -76,6 +76,9 @@ impl Pilot {
     ///
     /// One that draws state for a pass or looks at its whole frame gets the whole frame: on a few receivers that cost
     /// would be out of proportion, and neighbours too far apart to be any.
+    ///
+    /// # Errors
+    /// A strategy that cannot serve the scene.
     pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64, meter: Meter<'_>) -> Result<Self> {
         let (found, account) = meter.audit(|| Self::tried(target, truth, strategy, seed));
         Ok(Self { account, ..found? })

@@ -82,6 +82,9 @@ const SEED: u64 = 0x7265_6665_7265_6e63;
 impl Reference {
     /// The exact image of a target, from `cache` where it is there, until its own relMSE is at most `own_rel_mse`,
     /// however long that takes.
+    ///
+    /// # Errors
+    /// As [`bounded`](Self::bounded).
     pub fn compute(target: &Target<'_>, own_rel_mse: f64, cache: &Path, watch: &dyn Observer) -> Result<Self> {
         let wanted = Wanted { work_s: f64::INFINITY, ..Wanted::new(own_rel_mse) };
         Ok(Self::bounded(target, wanted, cache, watch)?.1)
@@ -91,6 +94,9 @@ impl Reference {
     ///
     /// Few receivers say which price of a ray leads to the relMSE, and what a receiver then takes; how many can be
     /// measured follows. Work is counted, not timed: every machine comes to the same receivers.
+    ///
+    /// # Errors
+    /// A cache that cannot be read or written; halves of the image that are not independent; the user's wish to stop.
     pub fn bounded<'a>(
         target: &Target<'a>,
         wanted: Wanted,

@@ -64,7 +64,8 @@ pub struct Measured {
 /// Runs peers on the scene of a target. `truth` is that at its measured receivers. Rows go to `writer` as they come; `before` holds those of
 /// finished runs, which are not repeated: runs whose image is kept (see [`ImageStore`]).
 ///
-/// Fails only where the result folder cannot be written or the user wants to stop.
+/// # Errors
+/// A result folder that cannot be written, or whose folder `peers` is another's or in use; the user's wish to stop.
 pub fn measure(
     target: &Target<'_>,
     truth: &Truth,

@@ -59,6 +59,10 @@ pub struct Peer {
 
 impl Peer {
     /// Reads `name` or `name:parameter=value`, as strategies are read.
+    ///
+    /// # Errors
+    /// An unknown name or parameter, with those that come near it; a value that is not allowed, with those that are;
+    /// a parameter without a value, or given twice.
     pub fn parse(text: &str) -> Result<Self> {
         let (name, rest) = text.trim().split_once(':').unwrap_or((text.trim(), ""));
         let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {

@@ -49,7 +49,9 @@ pub struct ResultFolder {
 impl ResultFolder {
     /// Opens a folder of results of `kind`; one that is not there or empty is made and marked.
     ///
-    /// Fails, and touches nothing, where the folder is somebody's own, holds other results, or is in use.
+    /// # Errors
+    /// A folder that is somebody's own, holds other results or is in use, of which nothing is touched; one that cannot
+    /// be made, read or written.
     pub fn open(path: &Path, kind: Kind) -> Result<Self> {
         fs::create_dir_all(path).map_err(Error::io("create", path))?;
         if !is_marked(path) && !is_empty(path)? {
@@ -76,6 +78,9 @@ impl ResultFolder {
     /// Makes `<results>/<date>-<what>-<short revision>/` and opens it; where it exists, `-2`, `-3` ... is appended.
     ///
     /// `what` is the scene's or study's name; the revision is shortened to its first 7 characters.
+    ///
+    /// # Errors
+    /// A folder that cannot be made or marked.
     pub fn create(results: &Path, date: &str, what: &str, revision: &str, kind: Kind) -> Result<Self> {
         fs::create_dir_all(results).map_err(Error::io("create", results))?;
         let short: String = revision.chars().take(7).collect();
@@ -94,12 +99,18 @@ impl ResultFolder {
     }
 
     /// Refuses what [`open`](Self::open) would refuse, and makes nothing: to be asked before anything is computed.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
     pub fn check(path: &Path, kind: Kind) -> Result<()> {
         if path.exists() && !is_empty(path)? { Self::open(path, kind).map(drop) } else { Ok(()) }
     }
 
     /// Keeps others from writing in `path` while this lives, whatever it holds; `None` where it is not marked, as older
     /// results are.
+    ///
+    /// # Errors
+    /// A folder that is in use by another process; a mark that cannot be opened or locked.
     pub fn hold(path: &Path) -> Result<Option<Self>> {
         if is_marked(path) { Self::locked(path).map(Some) } else { Ok(None) }
     }
@@ -110,6 +121,9 @@ impl ResultFolder {
     }
 
     /// Removes the folder and all in it, the mark last: what is left by one who dies meanwhile is still marked.
+    ///
+    /// # Errors
+    /// What cannot be read or removed.
     pub fn remove(&self) -> std::io::Result<()> {
         for entry in fs::read_dir(&self.path)? {
             let entry = entry?;

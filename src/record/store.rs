@@ -17,18 +17,25 @@ use std::path::{Path, PathBuf};
 pub use super::files::{ROWS_FILE, RUN_FILE, file_name};
 
 /// Writes `run.json` into `folder`, whole or not at all; it is written again as scenes finish.
+///
+/// # Errors
+/// A file that cannot be written.
 pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
     write_record(&folder.join(RUN_FILE), run)
 }
 
-/// Reads `run.json` from `folder`; one of another schema is refused.
+/// Reads `run.json` from `folder`.
+///
+/// # Errors
+/// A file that cannot be read; a record of another schema, or with a mistake, with its line.
 pub fn read_run(folder: &Path) -> Result<RunRecord> {
     read_record(&folder.join(RUN_FILE), SCHEMA)
 }
 
 /// What is in `folder` of the comparison that `own` begins: its record where it was begun there before, finished or not.
 ///
-/// Another comparison is refused, by what it differs in.
+/// # Errors
+/// Another comparison, by what it differs in; a record that cannot be read, or rows whose record is gone.
 pub fn begun(folder: &Path, own: &RunRecord) -> Result<Option<RunRecord>> {
     if folder.join(RUN_FILE).exists() {
         let earlier = read_run(folder)?;
@@ -78,7 +85,9 @@ pub struct Rows {
 /// Reads `runs.csv` from `folder`.
 ///
 /// A last line without its line break is an interrupted write: it is left out and reported in [`Rows::cut_short`].
-/// Anything else that is not a row is an error that names file, line and column.
+///
+/// # Errors
+/// A file that cannot be read; anything else that is not a row, with file, line and column.
 pub fn read_rows(folder: &Path) -> Result<Rows> {
     let path = folder.join(ROWS_FILE);
     let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
@@ -127,7 +136,10 @@ pub struct RowWriter {
 }
 
 impl RowWriter {
-    /// Begins `runs.csv` in `folder`; one that is already there is an error.
+    /// Begins `runs.csv` in `folder`.
+    ///
+    /// # Errors
+    /// A file that is already there, or that cannot be written.
     pub fn create(folder: &Path) -> Result<Self> {
         let path = folder.join(ROWS_FILE);
         let file = OpenOptions::new().append(true).create_new(true).open(&path).map_err(Error::io("create", &path))?;
@@ -139,6 +151,9 @@ impl RowWriter {
     /// Goes on with the `runs.csv` of an interrupted run, or begins it, and gives its rows.
     ///
     /// A line cut short, and all but the last of rows for the same scene, strategy, run and budget are removed.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written; a finished line that is no row, with file, line and column.
     pub fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
         let path = folder.join(ROWS_FILE);
         let text = match fs::read_to_string(&path) {
@@ -153,6 +168,9 @@ impl RowWriter {
     }
 
     /// Removes rows, which will be made again.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written; a finished line that is no row, with file, line and column.
     pub fn forget(&mut self, unwanted: impl Fn(&Row) -> bool) -> Result<()> {
         let text = fs::read_to_string(&self.path).map_err(Error::io("read", &self.path))?;
         let mut rows = parse_rows(&self.path, &text)?.rows;
@@ -162,11 +180,17 @@ impl RowWriter {
     }
 
     /// Appends one row; it is in the file when this returns.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
     pub fn write(&mut self, row: &Row) -> Result<()> {
         self.append(&row.fields())
     }
 
     /// Sees to it that all rows outlive a loss of power: to be called before a record says that they are there.
+    ///
+    /// # Errors
+    /// A file that cannot be brought to disk.
     pub fn sync(&self) -> Result<()> {
         self.file.sync_all().map_err(Error::io("write", &self.path))
     }

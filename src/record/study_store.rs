@@ -24,7 +24,9 @@ pub struct StudyWriter {
 impl StudyWriter {
     /// Begins the study that `record` describes in `folder`, or goes on with it where it was begun there.
     ///
-    /// Another study is refused, by what it differs in.
+    /// # Errors
+    /// Another study, by what it differs in; files of this one that cannot be read, or say what is no study; a folder
+    /// that cannot be written.
     pub fn open(folder: ResultFolder, record: StudyRecord) -> Result<Self> {
         let path = folder.path();
         let study = if is_study(path) {
@@ -69,6 +71,9 @@ impl StudyWriter {
     /// # Panics
     ///
     /// If a row does not have the cells of `key` or does not fit the table's columns.
+    ///
+    /// # Errors
+    /// A table's file that cannot be written.
     pub fn put(&mut self, table: &str, key: Key<'_>, rows: Vec<Cells>) -> Result<()> {
         let place = self.place(table);
         let (record, there) = (&self.study.record.tables[place], &mut self.study.rows[place]);
@@ -85,6 +90,9 @@ impl StudyWriter {
     }
 
     /// Adds a row.
+    ///
+    /// # Errors
+    /// A table's file that cannot be written.
     pub fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
         let place = self.place(table);
         self.study.rows[place].push(cells);
@@ -92,6 +100,9 @@ impl StudyWriter {
     }
 
     /// Adds a note about all of the study, once however often it is begun.
+    ///
+    /// # Errors
+    /// A record that cannot be written.
     pub fn note(&mut self, note: String) -> Result<()> {
         if self.study.record.notes.contains(&note) {
             return Ok(());
@@ -101,6 +112,9 @@ impl StudyWriter {
     }
 
     /// Notes a picture; gives the file that it is to be written to, `None` where that is there.
+    ///
+    /// # Errors
+    /// A record that cannot be written.
     pub fn picture(&mut self, file: &str, title: String) -> Result<Option<PathBuf>> {
         let pictures = &mut self.study.record.pictures;
         if !pictures.iter().any(|picture| picture.file == file) {
@@ -128,6 +142,9 @@ impl StudyWriter {
     /// Ends the study, which took `wall_s` seconds; one that has ended before stays as it is.
     ///
     /// `derive` writes what follows from a study into its folder: what says that it is finished is written after that.
+    ///
+    /// # Errors
+    /// An error of `derive`; a record that cannot be written.
     pub fn finish(mut self, wall_s: f64, derive: impl FnOnce(&Path, &Study) -> Result<()>) -> Result<Study> {
         let finished = self.study.record.finished;
         if !finished {
@@ -155,7 +172,11 @@ pub fn is_study(folder: &Path) -> bool {
 }
 
 /// Reads the study in `folder`. A last line of a table without its line break is an interrupted write and left out, and
-/// a table of an unfinished study may not be there yet; anything else that is not a row is an error that names file, line and column.
+/// a table of an unfinished study may not be there yet.
+///
+/// # Errors
+/// A file that cannot be read; a record of another schema, or with a mistake, with its line; anything else that is not
+/// a row, with file, line and column.
 pub fn read_study(folder: &Path) -> Result<Study> {
     let record: StudyRecord = store::read_record(&folder.join(STUDY_FILE), STUDY_SCHEMA)?;
     let read = |table| read_table(&table_file(folder, table), table, record.finished);

@@ -44,6 +44,9 @@ pub struct Derived {
 }
 
 /// The pages and plots of all scenes, in their order.
+///
+/// # Errors
+/// Two pages or plots that would be written to one file; a plot that cannot be drawn.
 pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     let mut files: Vec<Derived> = Vec::new();
     for scene in &run.scenes {
@@ -77,6 +80,9 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
 }
 
 /// The page and the plots of a study.
+///
+/// # Errors
+/// A plot that cannot be drawn.
 pub fn derive_study(record: &Study) -> Result<Vec<Derived>> {
     let name = format!("{}.md", store::file_name(&record.record.study));
     let plots = study::plots(record)?.into_iter().map(|(name, text)| Derived { name, text });
@@ -94,6 +100,9 @@ pub struct Section {
 
 /// The sections of a result folder for `page`, in order: one a scene, or one for all of a study. What they point to is
 /// named relative to the page's folder where it lies in there.
+///
+/// # Errors
+/// A folder without a record of a comparison or a study; a record or rows that cannot be read, or with a mistake.
 pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
     let seen = page.parent().and_then(|home| folder.strip_prefix(home).ok()).unwrap_or(folder);
     if is_study(folder) {
@@ -111,7 +120,9 @@ pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
 
 /// Writes the pages and plots of a result folder again, from its raw records and rows; gives their paths.
 ///
-/// A folder without a record of a comparison or a study is refused, as is one that another process writes in.
+/// # Errors
+/// A folder without a record of a comparison or a study, or that another process writes in; records and rows with a
+/// mistake; what cannot be read, drawn or written.
 pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
     let _held = ResultFolder::hold(folder)?;
     let files = read(folder)?;
@@ -120,6 +131,9 @@ pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Writes derived files into a result folder.
+///
+/// # Errors
+/// A file that cannot be written.
 pub fn write(folder: &Path, files: &[Derived]) -> Result<()> {
     files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))
 }
@@ -150,6 +164,9 @@ pub enum Drift {
 
 /// Looks for raw rows that are doubled or missing, and compares the pages and plots in a result folder with what the
 /// rows say; all is right where the list is empty.
+///
+/// # Errors
+/// A folder without a record of a comparison or a study; records and rows with a mistake; what cannot be read or drawn.
 pub fn check(folder: &Path) -> Result<Vec<Drift>> {
     let mut drifts: Vec<Drift> = faults(folder)?;
     for Derived { name, text } in read(folder)? {

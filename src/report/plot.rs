@@ -11,6 +11,9 @@ use crate::record::{Claim, Point, SceneRecord, Summary};
 ///
 /// Biased strategies are dashed and hollow, other renderers dotted. What a logarithmic axis cannot show (an error of
 /// exactly 0) is named under the legend.
+///
+/// # Errors
+/// A plot that cannot be drawn.
 pub fn plot(scene: &SceneRecord) -> Result<String> {
     let mut exact: Vec<String> = Vec::new();
     let mut series = Vec::new();

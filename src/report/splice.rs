@@ -9,6 +9,10 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Puts `body` into section `name` of the Markdown file `page`; a missing section is appended, a missing file is made.
+///
+/// # Errors
+/// A page that cannot be read or written; a section that has one end, stands there twice or ends before it begins, with
+/// its line.
 pub fn splice(page: &Path, name: &str, body: &str) -> Result<()> {
     let text = match std::fs::read_to_string(page) {
         Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
@@ -19,6 +23,9 @@ pub fn splice(page: &Path, name: &str, body: &str) -> Result<()> {
 }
 
 /// Whether section `name` of the Markdown file `page` says `body`.
+///
+/// # Errors
+/// A page that cannot be read; a section that has one end, stands there twice or ends before it begins, with its line.
 pub fn is_current(page: &Path, name: &str, body: &str) -> Result<bool> {
     let text = std::fs::read_to_string(page).map_err(Error::io("read", page))?;
     Ok(spliced(page, &text, name, body)? == text)

@@ -19,6 +19,10 @@ pub struct Camera {
 
 impl Camera {
     /// A camera at `position` that looks at `target` with +z up; `fov` is the vertical field of view in degrees.
+    ///
+    /// # Errors
+    /// A position or target that is not finite, or both in one place; an angle that is not between 0 and 180 degrees;
+    /// a film of no pixels, or of more than 2^24.
     pub fn new(position: Vec3, target: Vec3, fov: f32, width: u32, height: u32) -> Result<Self> {
         let forward = (target - position).as_dvec3();
         if !position.is_finite() || !target.is_finite() || forward.length() < 1e-6 {
@@ -33,6 +37,10 @@ impl Camera {
 
     /// A camera at `position` that looks along `forward`, the top of the picture towards `up`; neither need be a unit
     /// vector, and `up` need not be perpendicular. `fov` is the vertical field of view in degrees.
+    ///
+    /// # Errors
+    /// A position that is not finite; directions that are not finite, 0 or parallel; an angle that is not between 0 and
+    /// 180 degrees; a film of no pixels, or of more than 2^24.
     pub fn oriented(position: Vec3, forward: DVec3, up: DVec3, fov: f32, width: u32, height: u32) -> Result<Self> {
         if width == 0 || height == 0 || u64::from(width) * u64::from(height) > MOST_PIXELS {
             return Err(Error::Invalid(format!(

@@ -89,8 +89,11 @@ pub struct Scene {
 const DIGESTED: &[u8] = b"citylights scene, generator 1\n";
 
 impl Scene {
-    /// Checks the parts. Zero-area triangles are dropped, counted in a note; anything not finite or negative is
-    /// refused.
+    /// Checks the parts. Zero-area triangles are dropped, counted in a note.
+    ///
+    /// # Errors
+    /// Anything not finite; a colour below 0, an albedo above 1; a direction that is no unit vector; cones that no spot
+    /// has; a material or a run of lights that is not there; no surface with an area.
     pub fn new(parts: Parts) -> Result<Self> {
         let Parts { name, seed, origin, lights, groups, surfaces, materials, camera, ev100, mut notes } = parts;
         for (i, material) in materials.iter().enumerate() {

@@ -37,6 +37,9 @@ pub enum EarlyOut {
 /// others is not compiled in. Directional irradiance `E` gives `albedo/pi E (n.w)`; a point `albedo/pi I (n.w) / d^2`;
 /// a triangle of area A `albedo/pi L A (n.w)(n_l.-w) / d^2` (Kajiya 1986 with a Lambertian emitter) by area, `albedo/pi
 /// L S (n.w)` by its solid angle S, `albedo/pi E` by its irradiance E.
+///
+/// # Errors
+/// Where nothing arrives, the [`EarlyOut`] that says why.
 #[inline(always)]
 pub fn contribution<const KINDS: u8>(
     by: LightSampling,

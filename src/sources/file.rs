@@ -12,6 +12,10 @@ use crate::scene::Scene;
 use std::path::Path;
 
 /// The scene of a file: glTF if its name ends in `.glb` or `.gltf`, a recipe otherwise.
+///
+/// # Errors
+/// A file that cannot be read, or with a mistake, with its field and the line where it is known; an override that does
+/// not fit the file; a format that this program was built without.
 pub fn open(path: &Path, overrides: &Overrides) -> Result<Scene> {
     let is_gltf = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"));
     if is_gltf {

@@ -112,7 +112,10 @@ pub fn ground(half: f32, lights: Vec<Shape>) -> Parts {
     }
 }
 
-/// A camera of 40 x 30 pixels; `to` must be finite and away from `from`.
+/// A camera of 40 x 30 pixels at `from` that looks at `to`.
+///
+/// # Panics
+/// If either is not finite, or both are in one place.
 pub fn camera(from: Vec3, to: Vec3) -> Camera {
     Camera::new(from, to, 60.0, 40, 30).expect("a small film, an ordinary angle and a target away from the camera")
 }

@@ -68,11 +68,17 @@ impl Judged {
 }
 
 /// Reads a file of rows.
+///
+/// # Errors
+/// A file that cannot be read; as [`parse`].
 pub fn read(file: &Path) -> Result<Vec<Vector>> {
     parse(&fs::read(file).map_err(Error::io("read", file))?, file)
 }
 
 /// Reads rows from the text of a file, whose name is for messages alone.
+///
+/// # Errors
+/// A header or a row that cannot be used, with its line and column; a file without rows.
 pub fn parse(text: &[u8], file: &Path) -> Result<Vec<Vector>> {
     // Fields hold no commas and no line ends, so lines are rows: a line's number is then what an editor shows.
     let mut vectors = Vec::new();

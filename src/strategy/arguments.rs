@@ -42,6 +42,9 @@ impl<'r> Arguments<'r> {
     }
 
     /// A whole number within `allowed`.
+    ///
+    /// # Errors
+    /// A value that is no whole number within `allowed`.
     pub fn count(
         &mut self,
         name: &'static str,
@@ -53,6 +56,9 @@ impl<'r> Arguments<'r> {
     }
 
     /// A number within `allowed`.
+    ///
+    /// # Errors
+    /// A value that is no number within `allowed`.
     pub fn real(
         &mut self,
         name: &'static str,
@@ -64,6 +70,9 @@ impl<'r> Arguments<'r> {
     }
 
     /// One of a few words; gives its index.
+    ///
+    /// # Errors
+    /// A value that is none of `words`.
     pub fn choice(
         &mut self,
         name: &'static str,
@@ -81,6 +90,9 @@ impl<'r> Arguments<'r> {
     }
 
     /// A strategy to take candidates from; its own parameters stand between `;`: `light-tree:arity=2;open=0`.
+    ///
+    /// # Errors
+    /// An unknown strategy; a mistake in its parameters; one that takes a strategy itself.
     pub fn strategy(&mut self, name: &'static str, default: &'static str, meaning: &'static str) -> Result<Configured> {
         let text = self.take(name).unwrap_or_else(|| default.to_owned());
         // One level deep: what is named here takes no strategy itself.

@@ -87,6 +87,9 @@ impl Configured {
     }
 
     /// Builds its sampler for a scene.
+    ///
+    /// # Errors
+    /// A scene that the strategy cannot serve.
     pub fn build(&self, context: BuildContext<'_>) -> Result<Box<dyn AnySampler>> {
         Ok(Box::new(Spread { sampler: self.strategy.build(context)?, points: self.points }))
     }

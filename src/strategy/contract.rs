@@ -14,6 +14,9 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     /// What it becomes for a scene.
     type Sampler: AnySampler + 'static;
     /// Reads the parameters; each has a default.
+    ///
+    /// # Errors
+    /// A parameter whose value is not allowed.
     fn configure(arguments: &mut Arguments) -> Result<Self>;
     /// What it is with its parameters: they may decide the claim.
     fn info(&self) -> Info {
@@ -30,6 +33,9 @@ pub trait Strategy: Sized + Send + Sync + 'static {
         Self::INFO.role != Role::Oracle
     }
     /// Builds the sampler: the set-up phase.
+    ///
+    /// # Errors
+    /// A scene that it cannot serve.
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler>;
 }
 

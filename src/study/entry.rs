@@ -24,6 +24,10 @@ impl Entry {
     ///
     /// `folder` opens the folder that it is recorded in, which holds nothing yet or the same study, interrupted; it is
     /// called once all that was asked for has been read, so that a misspelt name leaves nothing behind.
+    ///
+    /// # Errors
+    /// A misspelt name; a recipe with a mistake, or that the study can measure nothing on; an error of `folder`;
+    /// another study in it; a file that cannot be read or written; the user's wish to stop.
     pub fn run(
         &self,
         options: &Options,

@@ -10,6 +10,9 @@ pub const STUDIES: [Entry; 6] =
     [strategies::ENTRY, visible::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
 
 /// The study of that name.
+///
+/// # Errors
+/// An unknown name, with those that come near it.
 pub fn find(name: &str) -> Result<Entry> {
     let unknown = || Error::Unknown {
         what: "study",

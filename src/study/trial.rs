@@ -55,6 +55,9 @@ const PATIENCE: f64 = 4.0;
 
 impl Trial<'_> {
     /// Runs every strategy; one that can afford no pass, or fails, has no figures and says why.
+    ///
+    /// # Errors
+    /// The user's wish to stop; no thread to run on.
     pub fn run(&self, strategies: &[&Configured], budgets: Budgets, watch: &dyn Observer) -> Result<Vec<Tried>> {
         let mut tried = self.those(false, strategies, budgets, watch)?;
         if strategies.iter().any(|strategy| is_oracle(strategy)) {

@@ -89,6 +89,9 @@ pub struct Copies {
 impl Copies {
     /// Changes a scene in every way; its shadow rays and points on lights are those of the stage that it is compared
     /// with.
+    ///
+    /// # Errors
+    /// A copy that is no scene: one so large, so bright or so small that its numbers have no place in an f32.
     pub fn new(scene: &Scene, offset: Offset, by: LightSampling) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
         parts.camera = parts.camera.shrunk(PIXELS);
@@ -146,6 +149,9 @@ impl<'a> Metamorphic<'a> {
     }
 
     /// Checks a strategy on each copy.
+    ///
+    /// # Errors
+    /// A strategy that cannot serve the scene, or a copy of it.
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let seed = self.whole.options.seed;
         let build = |verifier: &Verifier<'_>| strategy.build(BuildContext { stage: verifier.stage, seed });

@@ -47,6 +47,9 @@ impl<'a> Verifier<'a> {
     }
 
     /// Checks a strategy: levels 0 and 1.
+    ///
+    /// # Errors
+    /// A strategy that cannot serve the scene.
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let build = || strategy.build(BuildContext { stage: self.stage, seed: self.options.seed });
         let sampler = build()?;

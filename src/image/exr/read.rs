@@ -25,10 +25,12 @@ const MOST_BLOCK_BYTES: usize = 1 << 30;
 /// (`albedo.R`), or of several the one called `Combined`; else `Y` alone as grey.
 ///
 /// 16-bit floats and whole numbers are widened. The picture is the file's display window: pixels of it without data
-/// are 0, data outside it are left. Of several resolutions the largest is taken.
+/// are 0, data outside it are left. Of several resolutions the largest is taken. What the header claims is checked
+/// before memory is taken for it.
 ///
+/// # Errors
 /// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged, larger than [`MOST_PIXELS`], deep or
-/// without one such picture is [`Error::Input`]. What the header claims is checked before memory is taken for it.
+/// without one such picture is [`Error::Input`].
 pub fn read(path: &Path) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
     picture(BufReader::new(file)).map_err(|why| Error::Input {

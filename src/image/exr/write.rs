@@ -18,6 +18,9 @@ const REC_709: Chromaticities = Chromaticities {
 /// bytes.
 ///
 /// NaN and infinite components are kept. The header says by which program and with which primaries.
+///
+/// # Errors
+/// A picture without pixels, or with another number of them than its sides say.
 pub fn encode(picture: &Picture) -> Result<Vec<u8>> {
     picture.check()?;
     let (width, height) = (picture.width as usize, picture.height as usize);

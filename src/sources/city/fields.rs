@@ -9,12 +9,18 @@ use std::ops::RangeInclusive;
 /// A table of a recipe.
 pub trait Plan {
     /// Shows every field to `fields`, in order.
+    ///
+    /// # Errors
+    /// What `fields` refuses.
     fn visit(&mut self, fields: &mut dyn Fields) -> Result<()>;
 }
 
 /// Someone who goes through the fields of a [`Plan`], reading or checking them.
 pub trait Fields {
     /// A number in `unit`.
+    ///
+    /// # Errors
+    /// A value that is no number within `allowed`.
     fn number(
         &mut self,
         name: &'static str,
@@ -23,6 +29,9 @@ pub trait Fields {
         unit: &'static str,
     ) -> Result<()>;
     /// Two numbers in `unit`, the lower first.
+    ///
+    /// # Errors
+    /// Values that are no numbers within `allowed`, or the greater first.
     fn span(
         &mut self,
         name: &'static str,
@@ -31,12 +40,21 @@ pub trait Fields {
         unit: &'static str,
     ) -> Result<()>;
     /// A whole number.
+    ///
+    /// # Errors
+    /// A value that is no whole number within `allowed`.
     fn count(&mut self, name: &'static str, value: &mut u64, allowed: RangeInclusive<u64>) -> Result<()>;
     /// One of `options`, by its place in the list.
+    ///
+    /// # Errors
+    /// A value that is none of `options`.
     fn choice(&mut self, name: &'static str, value: &mut usize, options: &[&'static str]) -> Result<()>;
     /// Whether an optional table is there; `now` says whether the plan already holds one.
     fn has(&mut self, name: &'static str, now: bool) -> bool;
     /// A table within this one; only where [`has`](Self::has) said yes.
+    ///
+    /// # Errors
+    /// A value in it that is not allowed; read from a recipe, also a name that the plan does not know.
     fn table(&mut self, name: &'static str, plan: &mut dyn Plan) -> Result<()>;
 }
 

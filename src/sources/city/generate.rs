@@ -29,7 +29,10 @@ pub struct Grown {
     pub notes: Vec<String>,
 }
 
-/// Generates a city; fails on a plan with a number outside its range.
+/// Generates a city.
+///
+/// # Errors
+/// A plan that [`City::check`] refuses.
 pub fn generate(plan: &City, seed: u64) -> Result<Grown> {
     plan.check()?;
     let town = buildings::build(&plan.grid(), plan.buildings.as_ref(), seed);

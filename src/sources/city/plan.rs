@@ -120,7 +120,10 @@ impl City {
         self.lights as f64 / self.density * 1e6
     }
 
-    /// Fails on a number outside its range, and on numbers that together ask for a city too big for memory.
+    /// Holds the numbers against their ranges, and against what fits into memory.
+    ///
+    /// # Errors
+    /// A number outside its range; numbers that together ask for a city too big for memory.
     pub fn check(&self) -> Result<()> {
         self.clone().visit(&mut Check { owner: "city".into() })?;
         let refuse = |name: &str, value: String, expected: String| {

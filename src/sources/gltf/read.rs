@@ -18,11 +18,18 @@ use std::path::Path;
 const MOST_EV100: f64 = 60.0;
 
 /// The scene of a glTF file.
+///
+/// # Errors
+/// A file that cannot be read; as [`parse`].
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
     parse(&Source(path).read()?, path, overrides)
 }
 
 /// The scene of a glTF file's bytes; `file` is the name that errors give, and where buffers beside it are looked for.
+///
+/// # Errors
+/// A mistake, or what is not read here, with its field; a buffer beside the file that cannot be read; an override of
+/// the seed or the lights, or of the camera by a name that none bears.
 pub fn parse(bytes: &[u8], file: &Path, overrides: &Overrides) -> Result<Scene> {
     let source = Source(file);
     if overrides.seed.is_some() {

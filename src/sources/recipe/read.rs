@@ -34,6 +34,9 @@ const TOP: [&str; 14] = [
 ];
 
 /// The scene of a recipe file.
+///
+/// # Errors
+/// A file that cannot be read, larger than 16 MiB or no UTF-8 text; as [`parse`].
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(Error::io("read", path))?;
@@ -51,6 +54,9 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
 }
 
 /// The scene of a recipe's text; `file` is the name that errors give.
+///
+/// # Errors
+/// A recipe with a mistake, with its line and field; an override of the camera, or of the lights where no city is.
 pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     let source = Source::new(file, text);
     if text.trim().is_empty() {
