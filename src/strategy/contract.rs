@@ -8,6 +8,55 @@ use super::info::{Info, Role};
 use crate::base::error::Result;
 
 /// How lights are chosen: the parameters, before any scene is known.
+///
+/// ```
+/// use citylights::prelude::*;
+///
+/// /// Any light with the same chance.
+/// struct Any;
+///
+/// /// The lights of a scene.
+/// struct Lights(Vec<LightId>);
+///
+/// impl Strategy for Any {
+///     const INFO: Info = Info {
+///         name: "any",
+///         summary: "picks any light",
+///         source: "an example",
+///         claim: Claim::Unbiased,
+///         role: Role::Choosing,
+///     };
+///     type Sampler = Lights;
+///     fn configure(_: &mut Arguments<'_>) -> Result<Self> {
+///         Ok(Self)
+///     }
+///     fn build(&self, context: BuildContext<'_>) -> Result<Lights> {
+///         Ok(Lights(context.stage.lights().to_vec()))
+///     }
+/// }
+///
+/// impl LightSampler for Lights {
+///     type Scratch = ();
+///     fn sample<T: Tally>(&self, _: &Receiver, draws: &mut Draws, _: &mut (), out: &mut Picks<'_, T>) {
+///         let count = self.0.len() as f64;
+///         if let Some(&light) = self.0.get((draws.choice(0, 1) * count) as usize) {
+///             out.push(light, count as f32);
+///         }
+///     }
+///     fn expected_counts(&self, _: &Receiver, counts: &mut [f32]) -> bool {
+///         self.0.iter().for_each(|&light| counts[light as usize] += 1.0 / self.0.len() as f32);
+///         true
+///     }
+///     fn heap_bytes(&self) -> usize {
+///         size_of_val(&self.0[..])
+///     }
+/// }
+///
+/// let any = Registry::standard().with::<Any>().parse("any")?;
+/// let scene = Scene::new(citylights::sources::small::sixteen())?;
+/// assert!(verify(&any, &scene)?.iter().all(|check| check.passed));
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Strategy: Sized + Send + Sync + 'static {
     /// What it is.
     const INFO: Info;

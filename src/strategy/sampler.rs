@@ -6,6 +6,8 @@ use crate::base::draws::Draws;
 use crate::scene::receiver::Receiver;
 
 /// Lights chosen for one scene: the query phase. No allocation once the scratch is warm, no locks.
+///
+/// An example stands with [`Strategy`](super::Strategy).
 pub trait LightSampler: Send + Sync {
     /// Storage of one worker, reused from call to call.
     type Scratch: Default + Send + 'static;
