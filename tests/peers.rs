@@ -187,7 +187,7 @@ fn a_peer_that_is_too_bright_is_seen_to_be() {
 #[test]
 fn a_peer_that_is_not_there_is_a_note_and_no_failure() {
     let (ground, folder) = (ground(), tempfile::tempdir().expect("a folder"));
-    let readme = contains("benches/peers/README.md");
+    let readme = contains("src/peers/scripts/README.md");
     let out = folder.path().join("module");
     let missing = ground.compare("missing", "reference.exr", &out, &["--peer", "mitsuba"]).assert().success();
     missing

@@ -48,10 +48,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
     /// Another renderer, on the exported scene, in the same table: mitsuba, cycles, cycles:light-tree=off; more than once
-    /// for more than one. benches/peers/README.md says how to install them
+    /// for more than one. src/peers/scripts/README.md says how to install them
     #[arg(long = "peer", value_name = "NAME")]
     peers: Vec<String>,
-    /// The Python that has the peers; by default what CITYLIGHTS_PYTHON names, else benches/peers/.venv/bin/python where
+    /// The Python that has the peers; by default what CITYLIGHTS_PYTHON names, else src/peers/scripts/.venv/bin/python where
     /// that is, else python3
     #[arg(long, value_name = "FILE")]
     peer_python: Option<PathBuf>,
@@ -307,7 +307,7 @@ fn peers(given: &[String]) -> Result<Vec<Peer>> {
 
 /// The Python that peers are run with.
 fn python(given: Option<&Path>) -> PathBuf {
-    let own = || Some(PathBuf::from("benches/peers/.venv/bin/python")).filter(|file| file.exists());
+    let own = || Some(PathBuf::from("src/peers/scripts/.venv/bin/python")).filter(|file| file.exists());
     let named = given.map(Path::to_owned).or_else(|| std::env::var_os("CITYLIGHTS_PYTHON").map(PathBuf::from));
     named.or_else(own).unwrap_or_else(|| "python3".into())
 }

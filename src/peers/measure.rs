@@ -98,7 +98,7 @@ pub fn measure(
         let (summary, notes) = match outcome {
             Err(Trouble::Stop(error)) => return Err(error),
             Err(Trouble::Missing(why)) => {
-                let skipped = format!("skipped: {why}; see benches/peers/README.md");
+                let skipped = format!("skipped: {why}; see src/peers/scripts/README.md");
                 (Summary { skipped: Some(skipped), ..session.blank() }, Vec::new())
             }
             Err(Trouble::Failed(why)) => {

@@ -1,6 +1,6 @@
 //! How do other renderers do on the same scene?
 //!
-//! A [`Peer`] is a renderer and a small Python script of ours that drives it (`benches/peers/`, where the contract between
+//! A [`Peer`] is a renderer and a small Python script of ours that drives it (`src/peers/scripts/`, where the contract between
 //! the two stands). The scene is exported, the script renders it at a few sample counts and seeds, and its images become
 //! rows beside those of the strategies: the same reference, the same errors, marked external ([`measure`]).
 //!
@@ -32,7 +32,7 @@ const KINDS: [Kind; 2] = [
     Kind {
         name: "cycles",
         scene: (Format::Gltf, "scene.glb"),
-        script: ("cycles_peer.py", include_str!("../../benches/peers/cycles_peer.py")),
+        script: ("cycles_peer.py", include_str!("scripts/cycles_peer.py")),
         configure: |arguments| {
             const SWITCH: [&str; 2] = ["on", "off"];
             let tree = arguments.choice("light-tree", 0, &SWITCH, "whether lights are chosen by a tree")?;
@@ -42,13 +42,13 @@ const KINDS: [Kind; 2] = [
     Kind {
         name: "mitsuba",
         scene: (Format::Mitsuba, "scene.xml"),
-        script: ("mitsuba_peer.py", include_str!("../../benches/peers/mitsuba_peer.py")),
+        script: ("mitsuba_peer.py", include_str!("scripts/mitsuba_peer.py")),
         configure: |_| Ok(Vec::new()),
     },
 ];
 
 /// What every script imports, and the name of its file.
-const CONTRACT: (&str, &str) = ("contract.py", include_str!("../../benches/peers/contract.py"));
+const CONTRACT: (&str, &str) = ("contract.py", include_str!("scripts/contract.py"));
 
 /// A renderer with its parameters settled.
 pub struct Peer {

@@ -1,7 +1,7 @@
 // What the Khronos validator says of glTF files: errors, warnings, infos of each; exit code 1 on an error or a warning.
 //
 //     npm install gltf-validator
-//     node benches/peers/validate.mjs FILE.glb...
+//     node src/peers/scripts/validate.mjs FILE.glb...
 //
 // Run it where `npm install` was run, or name that folder in NODE_PATH.
 import { createRequire } from "node:module";

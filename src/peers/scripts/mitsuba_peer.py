@@ -2,8 +2,8 @@
 
 To make the environment, once, in the folder of the repository (Python 3.9 or later):
 
-    python3 -m venv benches/peers/.venv
-    benches/peers/.venv/bin/pip install mitsuba
+    python3 -m venv src/peers/scripts/.venv
+    src/peers/scripts/.venv/bin/pip install mitsuba
 
 `citylights compare SCENE --peer mitsuba` then finds it. What is asked of this script and what it prints stands in
 README.md beside it.

@@ -3,8 +3,8 @@
 To make the environment, once, in the folder of the repository (each version of bpy wants one version of Python: bpy 5.0
 wants 3.11):
 
-    python3.11 -m venv benches/peers/.venv
-    benches/peers/.venv/bin/pip install bpy
+    python3.11 -m venv src/peers/scripts/.venv
+    src/peers/scripts/.venv/bin/pip install bpy
 
 `citylights compare SCENE --peer cycles --peer cycles:light-tree=off` then finds it. What is asked of this script and what
 it prints stands in README.md beside it.
