@@ -7,7 +7,7 @@ use crate::base::random::RunKey;
 use crate::base::statistics::sidak;
 use crate::image::Picture;
 use crate::measure::clock::Cpu;
-use crate::measure::compare::{self as comparison, Options};
+use crate::measure::compare::{self as comparison, ComparisonOptions};
 use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::observer::Unobserved;
@@ -51,7 +51,7 @@ pub fn verify(strategy: &Configured, scene: &Scene) -> Result<Vec<Check>> {
     let stage = Stage::new(Scene::new(Parts { camera, ..parts })?, LeaveOut::Yes, Offset::SCALED);
     let by_chance = BY_CHANCE.len() + metamorphic::CHANCES;
     // A check fails only if it fails twice.
-    let options = checks::Options { level: sidak(0.01, by_chance).sqrt(), ..checks::Options::default() };
+    let options = checks::VerifyOptions { level: sidak(0.01, by_chance).sqrt(), ..checks::VerifyOptions::default() };
     let mut found = Verifier::new(&stage, options).verify(strategy)?;
     let copies = Copies::new(scene, Offset::SCALED, stage.light_sampling())?;
     found.extend(Metamorphic::new(&copies, options.fewer()).verify(strategy)?);
@@ -70,7 +70,7 @@ pub fn compare(strategies: &[Configured], scene: Scene, folder: &Path) -> Result
     let clock = Cpu::new();
     let engine = Engine { clock: &clock, workers: 2, seed: 1 };
     let films = ImageStore::of(folder, name);
-    let options = Options {
+    let options = ComparisonOptions {
         typed: &format!("citylights verify {name}"),
         strategies,
         budget: Budget::up_to(64, 1.0),

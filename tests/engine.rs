@@ -8,7 +8,7 @@ mod common;
 use alone::Alone;
 use citylights::base::random::RunKey;
 use citylights::measure::clock::{Clock, Cpu, Spent};
-use citylights::measure::compare::{Compared, Options, compare};
+use citylights::measure::compare::{Compared, ComparisonOptions, compare};
 use citylights::measure::engine::{Block, Engine};
 use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
@@ -63,7 +63,7 @@ fn compared(clock: &dyn Clock, seed: u64, workers: usize) -> (SceneRecord, Vec<R
         Registry::standard().parse_list("all,uniform,power,intensity,light-tree,resampled,influence").expect("a list");
     let engine = Engine { clock, workers, seed };
     let films = ImageStore::of(folder.path(), "engine");
-    let options = Options {
+    let options = ComparisonOptions {
         typed: "made.toml",
         strategies: &strategies,
         budget: Budget { usual_passes: 16, most_passes: 64, work_s: 0.05 },

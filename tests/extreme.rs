@@ -11,7 +11,7 @@ use citylights::scene::{Parts, Scene, Surface};
 use citylights::sources::Overrides;
 use citylights::sources::recipe::load;
 use citylights::strategy::Registry;
-use citylights::verify::{Options, Verifier};
+use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::image;
@@ -77,7 +77,7 @@ fn every_strategy_keeps_its_contract_and_the_exact_mean() {
     let mut failed = Vec::new();
     for name in SCENES {
         let stage = Stage::new(scene(name, 64 * 36), LeaveOut::Yes, Offset::SCALED);
-        let options = Options { receivers: 8, draws: 5_000, ..Options::default() };
+        let options = VerifyOptions { receivers: 8, draws: 5_000, ..VerifyOptions::default() };
         let verifier = Verifier::new(&stage, options);
         assert!(verifier.truths().iter().any(|truth| truth.total() > 0.0), "{name} is black");
         for info in Registry::standard().infos() {
@@ -86,7 +86,7 @@ fn every_strategy_keeps_its_contract_and_the_exact_mean() {
             failed.extend(checks.iter().filter(|c| !c.passed).map(|c| format!("{name}, {}: {c}", strategy.name())));
         }
     }
-    assert!(failed.is_empty(), "seed {}:\n{}", Options::default().seed, failed.join("\n"));
+    assert!(failed.is_empty(), "seed {}:\n{}", VerifyOptions::default().seed, failed.join("\n"));
 }
 
 /// What a light adds at a receiver with nothing in between, in f64, and what f32 may make of it: its relative error.
@@ -201,7 +201,7 @@ static A_MILLION: LazyLock<Stage> = LazyLock::new(|| Stage::new(scene(MILLION, 1
 const SLOW: [&str; 4] = ["all", "allocate", "stochastic-cull", "oracle"];
 
 fn assert_verified_among_a_million(wanted: impl Fn(&str) -> bool) {
-    let options = Options { receivers: 2, draws: 400, batches: 50, points: 1, ..Options::default() };
+    let options = VerifyOptions { receivers: 2, draws: 400, batches: 50, points: 1, ..VerifyOptions::default() };
     let verifier = Verifier::new(&A_MILLION, options);
     assert!(verifier.truths().iter().any(|truth| truth.total() > 0.0), "{MILLION} is black");
     let (mut failed, mut tried) = (Vec::new(), 0);

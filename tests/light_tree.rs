@@ -16,7 +16,7 @@ use citylights::scene::receiver::Receiver;
 use citylights::shading::contribution::contribution;
 use citylights::strategy::Registry;
 use citylights::tree::{How, Tree};
-use citylights::verify::{Options, Verifier};
+use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{
@@ -336,7 +336,7 @@ fn all_kinds_of_light_are_in_proportion() {
 #[test]
 fn every_way_keeps_the_contract() {
     let stage = stage(sixteen());
-    let verifier = Verifier::new(&stage, Options { receivers: 12, draws: 4_000, ..Options::default() });
+    let verifier = Verifier::new(&stage, VerifyOptions { receivers: 12, draws: 4_000, ..VerifyOptions::default() });
     for way in WAYS {
         for check in verifier.verify(&Registry::standard().parse(way).expect(way)).expect(way) {
             assert!(check.passed, "{way}: {check}");

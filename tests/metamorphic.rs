@@ -10,7 +10,7 @@ use citylights::scene::{Parts, Scene};
 use citylights::sources::small;
 use citylights::strategy::{Claim, Registry};
 use citylights::verify::metamorphic::{Copies, Metamorphic};
-use citylights::verify::{Check, Options, Verifier};
+use citylights::verify::{Check, Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{bits, expected, image, point, sixteen, stage_with};
@@ -30,7 +30,7 @@ fn assert_close(a: &[f32], b: &[f32], what: &str) {
 }
 
 /// The checks of level 2 for every registered strategy: all pass, and the truth itself.
-fn unchanged(scene: &Scene, options: Options) {
+fn unchanged(scene: &Scene, options: VerifyOptions) {
     let copies = Copies::new(scene, Offset::SCALED, LightSampling::default()).expect("changed scenes");
     let metamorphic = Metamorphic::new(&copies, options);
     let mut failed = Vec::new();
@@ -57,7 +57,7 @@ fn unchanged(scene: &Scene, options: Options) {
 #[test]
 fn no_change_that_changes_nothing_changes_a_small_scene() {
     for parts in small::all().into_iter().filter(|parts| ["sixteen", "one-place"].contains(&&*parts.name)) {
-        let options = Options { receivers: 8, draws: 5_000, batches: 50, ..Options::default() };
+        let options = VerifyOptions { receivers: 8, draws: 5_000, batches: 50, ..VerifyOptions::default() };
         unchanged(&Scene::new(parts).expect("a scene"), options);
     }
 }
@@ -69,7 +69,10 @@ fn no_change_that_changes_nothing_changes_a_city() {
     use citylights::sources::recipe::load;
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let scene = load(&file, &Overrides::default()).expect("a shipped scene");
-    unchanged(&scene, Options { receivers: 8, draws: 2_000, batches: 50, points: 16, ..Options::default() });
+    unchanged(
+        &scene,
+        VerifyOptions { receivers: 8, draws: 2_000, batches: 50, points: 16, ..VerifyOptions::default() },
+    );
 }
 
 /// Every light on its own: a table of the same lights in parts must not brighten or darken anything.
@@ -87,7 +90,7 @@ fn a_lamp_split_into_ten_leaves_the_expected_image() {
     parts.lights[8] = lamp;
     parts.lights.extend([lamp; 9]);
     let (whole, split) = (whole(sixteen()), whole(parts));
-    let options = Options { receivers: 8, draws: 5_000, seed: 3, ..Options::default() };
+    let options = VerifyOptions { receivers: 8, draws: 5_000, seed: 3, ..VerifyOptions::default() };
     let (before, after) = (Verifier::new(&whole, options), Verifier::new(&split, options));
     for (a, b) in before.truths().iter().zip(after.truths()) {
         assert!((a.total() - b.total()).abs() <= 0.02 * a.total(), "{} and {}", a.total(), b.total());

@@ -16,7 +16,7 @@ use citylights::scene::receiver::Receiver;
 use citylights::strategy::{
     Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
 };
-use citylights::verify::{Check, Options, Verifier, picks_in_range, picks_valid};
+use citylights::verify::{Check, Verifier, VerifyOptions, picks_in_range, picks_valid};
 use common::{sixteen, stage};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -129,11 +129,11 @@ fn mutants() -> Registry {
 }
 
 fn checks(kind: u8) -> Vec<Check> {
-    let options = Options { allocations: Some(counting::allocations), ..Options::default() };
+    let options = VerifyOptions { allocations: Some(counting::allocations), ..VerifyOptions::default() };
     checks_with(kind, &options)
 }
 
-fn checks_with(kind: u8, options: &Options) -> Vec<Check> {
+fn checks_with(kind: u8, options: &VerifyOptions) -> Vec<Check> {
     let strategy = mutants().parse(NAMES[kind as usize]).expect("a mutant");
     Verifier::new(&stage(sixteen()), *options).verify(&strategy).expect("a sampler")
 }
@@ -174,7 +174,7 @@ fn a_right_strategy_fails_no_check_oftener_than_its_level() {
         let sampler = strategy.build(BuildContext { stage: &stage, seed: 1 }).expect("a sampler");
         let mut failures = std::collections::BTreeMap::new();
         for seed in 100..160 {
-            let options = Options { receivers: 6, draws: 3_000, batches: 100, seed, ..Options::default() };
+            let options = VerifyOptions { receivers: 6, draws: 3_000, batches: 100, seed, ..VerifyOptions::default() };
             for check in Verifier::new(&stage, options).look(&*sampler, Claim::Unbiased) {
                 *failures.entry(check.name).or_insert(0) += u32::from(!check.passed);
             }
@@ -209,7 +209,7 @@ fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
     let scene = load(&file, &Overrides::default()).expect("a shipped scene");
     let city = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
-    let verifier = Verifier::new(&city, Options { receivers: 16, draws: 10_000, ..Options::default() });
+    let verifier = Verifier::new(&city, VerifyOptions { receivers: 16, draws: 10_000, ..VerifyOptions::default() });
     for (kind, meant) in [(RIGHT, None), (HEAVY, Some("weights-total")), (DROPPED, Some("coverage"))] {
         let strategy = mutants().parse(NAMES[kind as usize]).expect("a mutant");
         let checks = verifier.verify(&strategy).expect("a sampler");
@@ -240,7 +240,7 @@ fn a_stage_that_leaves_out_too_much_is_found() {
     needs.occlusion = false;
     let strategy = mutants().parse("right").expect("a strategy");
     let blind = whole.with_needs(needs);
-    let checks = Verifier::new(&blind, Options::default()).verify(&strategy).expect("a sampler");
+    let checks = Verifier::new(&blind, VerifyOptions::default()).verify(&strategy).expect("a sampler");
     let replay = checks.iter().find(|check| check.name == "replay").expect("the check");
     assert!(!replay.passed, "{replay}");
 }

@@ -20,7 +20,7 @@ use citylights::strategy::{
     Role, Strategy, Tally,
 };
 use citylights::verify::metamorphic::{Copies, Metamorphic};
-use citylights::verify::{Check, Options, Verifier};
+use citylights::verify::{Check, Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::Stage;
 use common::{cuboid, ground, panel, point, sixteen, stage};
@@ -277,7 +277,7 @@ fn rejected(name: &str, checks: &[Check], meant: &[&str], innocent: &[&str]) {
 }
 
 fn looked_at(name: &str, stage: &Stage) -> Vec<Check> {
-    Verifier::new(stage, Options { receivers: 16, draws: 5_000, ..Options::default() })
+    Verifier::new(stage, VerifyOptions { receivers: 16, draws: 5_000, ..VerifyOptions::default() })
         .verify(&mutant(name))
         .expect("a sampler")
 }
@@ -285,8 +285,10 @@ fn looked_at(name: &str, stage: &Stage) -> Vec<Check> {
 fn changed(name: &str, parts: Parts) -> Vec<Check> {
     let copies = Copies::new(&Scene::new(parts).expect("a scene"), Offset::SCALED, LightSampling::default())
         .expect("changed scenes");
-    let metamorphic =
-        Metamorphic::new(&copies, Options { receivers: 8, draws: 5_000, batches: 50, ..Options::default() });
+    let metamorphic = Metamorphic::new(
+        &copies,
+        VerifyOptions { receivers: 8, draws: 5_000, batches: 50, ..VerifyOptions::default() },
+    );
     assert!(metamorphic.image().iter().all(|check| check.passed), "{:?}", metamorphic.image());
     metamorphic.verify(&mutant(name)).expect("samplers")
 }
@@ -366,7 +368,7 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
 #[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
-    use citylights::measure::compare::{Compared, Options, compare};
+    use citylights::measure::compare::{Compared, ComparisonOptions, compare};
     use citylights::measure::engine::Engine;
     use citylights::measure::image_store::ImageStore;
     use citylights::measure::observer::Unobserved;
@@ -379,7 +381,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &ImageStore::of(folder, "mutants");
     let engine = &Engine { clock: &alone::Alone::new(), workers: 1, seed: 1 };
-    let options = Options {
+    let options = ComparisonOptions {
         typed: "citylights verify sixteen.toml",
         strategies: &strategies,
         budget,

@@ -15,7 +15,7 @@ use citylights::strategy::{
     AnySampler, Arguments, Block, BuildContext, Claim, Frame, Info, LightSampler, Picks, Registry, Role, Strategy,
     Tally,
 };
-use citylights::verify::{Options, Verifier};
+use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::stage::Stage;
 use common::{sixteen, stage};
 use std::ops::Range;
@@ -163,7 +163,7 @@ fn mutants() -> Registry {
 /// The names of the checks that fail.
 fn failed(registry: &Registry, name: &str, stage: &Stage) -> Vec<&'static str> {
     let strategy = registry.parse(name).expect(name);
-    let options = Options { receivers: 16, draws: 5_000, ..Options::default() };
+    let options = VerifyOptions { receivers: 16, draws: 5_000, ..VerifyOptions::default() };
     let checks = Verifier::new(stage, options).verify(&strategy).expect("a sampler");
     checks.iter().for_each(|check| println!("{name}: {check}"));
     checks.iter().filter(|check| !check.passed).map(|check| check.name).collect()

@@ -14,7 +14,7 @@ use citylights::strategies::visible::{self, Visible};
 use citylights::strategy::{
     Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
 };
-use citylights::verify::{Check, Options, Verifier};
+use citylights::verify::{Check, Verifier, VerifyOptions};
 use common::{cuboid, ground, panel, point, sixteen, stage};
 use glam::Vec3;
 
@@ -188,7 +188,7 @@ fn yard() -> Parts {
 /// The names of the checks that fail.
 fn failed(name: &str, parts: Parts) -> Vec<&'static str> {
     let strategy = mutants().parse(name).expect("a mutant");
-    let options = Options { receivers: 32, draws: 10_000, ..Options::default() };
+    let options = VerifyOptions { receivers: 32, draws: 10_000, ..VerifyOptions::default() };
     let checks: Vec<Check> = Verifier::new(&stage(parts), options).verify(&strategy).expect("a sampler");
     checks.iter().for_each(|check| println!("{name}: {check}"));
     checks.iter().filter(|check| !check.passed).map(|check| check.name).collect()

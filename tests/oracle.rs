@@ -9,7 +9,7 @@ mod common;
 mod runs;
 
 use alone::Alone;
-use citylights::measure::compare::{Compared, Options as Comparison, compare};
+use citylights::measure::compare::{Compared, ComparisonOptions, compare};
 use citylights::measure::engine::Engine;
 use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
@@ -17,7 +17,7 @@ use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
 use citylights::record::{Claim, Interval};
 use citylights::strategy::Registry;
-use citylights::verify::{Options, Truth, Verifier};
+use citylights::verify::{Truth, Verifier, VerifyOptions};
 use common::{expected, ground, point, sixteen, stage};
 use glam::Vec3;
 use runs::Runs;
@@ -26,7 +26,7 @@ use runs::Runs;
 fn the_oracle_keeps_its_contract() {
     let stage = stage(sixteen());
     for name in ["oracle", "oracle:mix=0.001", "oracle:mix=0.5"] {
-        let checks = Verifier::new(&stage, Options::default())
+        let checks = Verifier::new(&stage, VerifyOptions::default())
             .verify(&Registry::standard().parse(name).expect(name))
             .expect(name);
         let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
@@ -75,7 +75,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let strategies = Registry::standard().parse_list("all,power,oracle,intensity,restir").expect("a list");
     let films = ImageStore::of(folder.path(), "oracle");
     let engine = Engine { clock: &Alone::new(), workers: 2, seed: 1 };
-    let options = Comparison {
+    let options = ComparisonOptions {
         typed: "made.toml",
         strategies: &strategies,
         budget: Budget::up_to(16, 5.0),

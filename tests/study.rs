@@ -21,7 +21,7 @@ use citylights::sources::Overrides;
 use citylights::strategy::Registry;
 use citylights::strategy::{Frame, PickBuffer};
 use citylights::study::quality::{Finding, quality};
-use citylights::study::{self, Options};
+use citylights::study::{self, StudyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::LeaveOut;
 use common::{ground, point, receiver, sampler, spot, stage_with};
@@ -246,8 +246,8 @@ fn a_section_points_to_the_plots_of_its_folder() {
 /// A street between two facades, in a folder of its own.
 const STREET: &str = include_str!("data/street.toml");
 
-fn options(folder: &Path, strategies: &str) -> Options {
-    Options {
+fn options(folder: &Path, strategies: &str) -> StudyOptions {
+    StudyOptions {
         registry: Registry::standard(),
         program: None,
         scenes: Vec::new(),
@@ -266,7 +266,7 @@ fn options(folder: &Path, strategies: &str) -> Options {
 }
 
 /// Runs a study, checks that its derived files follow from its cells, and that a changed cell is noticed.
-fn ran(name: &str, options: &Options, folder: &Path) -> Study {
+fn ran(name: &str, options: &StudyOptions, folder: &Path) -> Study {
     let out = folder.join(name);
     let make = || ResultFolder::open(&out, Kind::Study);
     let study = study::find(name).expect("known").run(options, format!("citylights study {name}"), &make, &Unobserved);
@@ -314,7 +314,8 @@ fn strategies_are_told_apart_by_probability_and_by_measuring() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = folder.path().join("street.toml");
     fs::write(&scene, STREET).expect("written");
-    let options = Options { scenes: vec![scene], ..options(folder.path(), "uniform,intensity,influence:cutoff=100") };
+    let options =
+        StudyOptions { scenes: vec![scene], ..options(folder.path(), "uniform,intensity,influence:cutoff=100") };
     let study = ran("strategies", &options, folder.path());
     let quality = |strategy, column| figure(&study, "quality-street", strategy, column);
     // Points and spots alone: intensity is exact but for the facades' colours.
@@ -330,7 +331,8 @@ fn strategies_are_told_apart_by_probability_and_by_measuring() {
 #[test]
 fn the_cut_off_loses_what_its_closed_form_says() {
     let folder = tempfile::tempdir().expect("a folder");
-    let options = Options { pixels: Some(128), ..options(folder.path(), "influence,influence-tail,stochastic-cull") };
+    let options =
+        StudyOptions { pixels: Some(128), ..options(folder.path(), "influence,influence-tail,stochastic-cull") };
     let study = ran("cutoff", &options, folder.path());
     for strategy in ["influence:cutoff=2", "influence", "influence:cutoff=0.125", "influence:transfer=srgb"] {
         let ratio = figure(&study, "law", strategy, "ratio");
@@ -359,7 +361,7 @@ fn the_cut_off_loses_what_its_closed_form_says() {
 #[test]
 fn growth_is_recorded_with_its_exponents() {
     let folder = tempfile::tempdir().expect("a folder");
-    let options = Options { max_lights: 10_000, ..options(folder.path(), "uniform,power,influence") };
+    let options = StudyOptions { max_lights: 10_000, ..options(folder.path(), "uniform,power,influence") };
     let study = ran("scaling", &options, folder.path());
     let lights: Vec<f64> = cells(&study, "growth", "power", "lights").iter().filter_map(|cell| cell.number()).collect();
     assert!(lights.len() == 3 && lights.windows(2).all(|w| w[1] > 5.0 * w[0]), "{lights:?}");
@@ -373,8 +375,8 @@ fn growth_is_recorded_with_its_exponents() {
 #[test]
 fn each_step_to_what_places_see_stands_beside_the_first() {
     let folder = tempfile::tempdir().expect("a folder");
-    let few = Options { pixels: Some(8), passes: 1, repeats: 2, ..options(folder.path(), "visible,light-tree") };
-    let missing = Options { scenes: vec!["scenes/no-such.toml".into()], ..few.clone() };
+    let few = StudyOptions { pixels: Some(8), passes: 1, repeats: 2, ..options(folder.path(), "visible,light-tree") };
+    let missing = StudyOptions { scenes: vec!["scenes/no-such.toml".into()], ..few.clone() };
     let error = study::find("visible").expect("known").run(&missing, String::new(), &|| unreachable!(), &Unobserved);
     assert!(error.expect_err("no such scene").to_string().contains("no-such"));
     let study = ran("visible", &few, folder.path());
@@ -402,7 +404,7 @@ fn offset_figure(study: &Study, table: &str, distance: Option<u64>, policy: &str
 #[test]
 fn only_the_default_offset_has_neither_acne_nor_leaks_far_from_the_origin() {
     let folder = tempfile::tempdir().expect("a folder");
-    let options = Options { receivers: 4_000, ..options(folder.path(), "power") };
+    let options = StudyOptions { receivers: 4_000, ..options(folder.path(), "power") };
     let study = ran("offsets", &options, folder.path());
     let figure =
         |distance, policy, column| offset_figure(&study, "totals", Some(distance), policy, column).expect("a figure");
@@ -439,7 +441,7 @@ fn a_scene_without_a_city_cannot_be_grown() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = folder.path().join("street.toml");
     fs::write(&scene, STREET).expect("written");
-    let options = Options { scenes: vec![scene], ..options(folder.path(), "power") };
+    let options = StudyOptions { scenes: vec![scene], ..options(folder.path(), "power") };
     let nowhere = || panic!("no folder is made for what cannot be run");
     let error = study::find("scaling").expect("known").run(&options, String::new(), &nowhere, &Unobserved);
     let error = error.expect_err("refused").to_string();
@@ -515,7 +517,7 @@ fn the_quality_is_the_variance_of_an_estimate() {
 #[test]
 fn soft_shadows_fall_as_the_rays_and_the_best_shares_are_best() {
     let folder = tempfile::tempdir().expect("a folder");
-    let options = Options {
+    let options = StudyOptions {
         pixels: Some(192),
         repeats: 8,
         overrides: Overrides { resolution: Some((48, 32)), ..Overrides::default() },

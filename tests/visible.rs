@@ -14,7 +14,7 @@ use citylights::render::passes::Plan;
 use citylights::scene::Parts;
 use citylights::shading::importance::importance;
 use citylights::strategy::{BuildContext, Frame, PickBuffer, Registry};
-use citylights::verify::{Options, Verifier};
+use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use common::{bits, cuboid, ground, image, moon, panel, point, receiver, sampler, stage, stage_with};
@@ -49,7 +49,7 @@ fn expected(name: &str, stage: &Stage) -> Vec<Vec<f32>> {
 
 /// The strategy passes all checks of its contract.
 fn assert_kept(name: &str, stage: &Stage) {
-    let options = Options { receivers: 64, draws: 20_000, points: 256, ..Options::default() };
+    let options = VerifyOptions { receivers: 64, draws: 20_000, points: 256, ..VerifyOptions::default() };
     let checks = Verifier::new(stage, options).verify(&Registry::standard().parse(name).expect(name)).expect(name);
     let failed: Vec<String> = checks.iter().filter(|check| !check.passed).map(ToString::to_string).collect();
     assert!(failed.is_empty(), "{name}: {failed:?}");

@@ -10,7 +10,7 @@ use super::threads::{pool, threads};
 use super::values::seconds;
 use crate::base::error::{Error, Result};
 use crate::measure::clock::Cpu;
-use crate::measure::compare::{Compared, Options, compare};
+use crate::measure::compare::{Compared, ComparisonOptions, compare};
 use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
@@ -166,7 +166,7 @@ impl Session {
         let Asked { home, arguments, strategies, peers, threads } = *asked;
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
-        let options = Options {
+        let options = ComparisonOptions {
             typed: &format!("{} verify {}", home.program.name, arguments.scene_options.typed(file)),
             strategies,
             budget: Budget {
@@ -190,7 +190,7 @@ impl Session {
         };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
         let Compared { mut scene, mut rows, truth, target } = compared.inspect_err(resumable)?;
-        let options = peers::measure::Options {
+        let options = peers::measure::PeerOptions {
             peers,
             python: &python(arguments.peer_python.as_deref()),
             spp: &budgets(arguments.budget.unwrap_or(64)).collect::<Vec<u32>>(),

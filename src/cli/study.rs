@@ -12,7 +12,7 @@ use crate::record::environment;
 use crate::record::{Kind, ResultFolder};
 use crate::report;
 use crate::sources::Overrides;
-use crate::study::{Entry, Options, STUDIES, find};
+use crate::study::{Entry, STUDIES, StudyOptions, find};
 use clap::Args;
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
@@ -113,9 +113,9 @@ fn folder(out: &Path, study: &Entry, all: bool) -> PathBuf {
     if all { out.join(study.name) } else { out.to_owned() }
 }
 
-fn options(arguments: &Arguments, home: &Home<'_>) -> Options {
+fn options(arguments: &Arguments, home: &Home<'_>) -> StudyOptions {
     let overrides = Overrides { seed: arguments.scene_seed, resolution: arguments.resolution, ..Overrides::default() };
-    Options {
+    StudyOptions {
         registry: home.registry.clone(),
         program: home.foreign(),
         scenes: arguments.scenes.clone(),

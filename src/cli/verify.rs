@@ -15,7 +15,7 @@ use crate::scene::{Parts, Scene};
 use crate::sources::small;
 use crate::strategy::{Claim, Configured};
 use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
-use crate::verify::{self, BY_CHANCE, Check, Options, Verifier};
+use crate::verify::{self, BY_CHANCE, Check, Verifier, VerifyOptions};
 use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -74,13 +74,13 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         gate::options(strategies.len(), seed)
     } else {
         say(&format!("seed {seed}; level {} for {chances} checks that go by chance", arguments.level));
-        Options {
+        VerifyOptions {
             receivers: arguments.receivers as usize,
             draws: arguments.draws as usize,
             seed,
             // A check fails only if it fails twice.
             level: sidak(arguments.level, chances).sqrt(),
-            ..Options::default()
+            ..VerifyOptions::default()
         }
     };
     let progress = Progress::new()?;
@@ -114,7 +114,7 @@ fn verify(
     scene: &Scene,
     arguments: &Arguments,
     strategies: &[Configured],
-    options: Options,
+    options: VerifyOptions,
     watch: &Progress,
 ) -> anyhow::Result<Vec<Found>> {
     watch.begin("strategies", strategies.len() as u64);

@@ -19,7 +19,7 @@ use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, SharedWo
 use crate::strategy::{Configured, Role};
 use crate::visibility::stage::Stage;
 
-pub use super::options::Options;
+pub use super::options::ComparisonOptions;
 
 /// What a comparison found on one scene.
 pub struct Compared<'a> {
@@ -42,7 +42,7 @@ pub struct Compared<'a> {
 pub fn compare<'a>(
     stage: &'a Stage,
     file: &str,
-    options: &Options<'_>,
+    options: &ComparisonOptions<'_>,
     before: &[Row],
     rows: &mut RowWriter,
     watch: &dyn Observer,
@@ -93,7 +93,7 @@ pub fn compare<'a>(
 /// A pilot, or why there is none; nothing of what is not run against the clock.
 type Trial = Result<Pilot>;
 
-fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> Result<Vec<Option<Trial>>> {
+fn pilots(target: &Target<'_>, options: &ComparisonOptions<'_>, watch: &dyn Observer) -> Result<Vec<Option<Trial>>> {
     let few = target.thinned(plan::RECEIVERS);
     let rough = Reference::compute(&few, 1e-3, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
@@ -116,7 +116,7 @@ fn pilots(target: &Target<'_>, options: &Options<'_>, watch: &dyn Observer) -> R
 
 /// The relMSE of its own that a reference may have: a hundredth of the best row's error, with some room for the pilot's
 /// own noise; never below what f32 can hold.
-fn accuracy(options: &Options<'_>, pilots: &[Option<Trial>], ladders: &[Vec<u32>]) -> f64 {
+fn accuracy(options: &ComparisonOptions<'_>, pilots: &[Option<Trial>], ladders: &[Vec<u32>]) -> f64 {
     let best = options.strategies.iter().zip(pilots).zip(ladders).filter_map(|((strategy, pilot), ladder)| {
         let pilot = pilot.as_ref()?.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
         Some(pilot.expected_rel_mse(*ladder.last()?))
@@ -129,7 +129,7 @@ const LEVEL: f64 = 0.01;
 
 /// Gives every unbiased row an interval of its bias that holds for all of them together; one whose interval is off 0 has
 /// failed.
-fn hold_to_claims(options: &Options<'_>, summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
+fn hold_to_claims(options: &ComparisonOptions<'_>, summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
     let held = |s: &Summary| s.claim == Claim::Unbiased && s.error.is_none() && s.mean_bias.is_bounded();
     let level = sidak(LEVEL, summaries.iter().filter(|s| held(s)).count());
     for (summary, runs) in summaries.iter_mut().zip(runs).filter(|(summary, _)| held(summary)) {

@@ -9,7 +9,7 @@ use crate::base::error::{Error, Result};
 use crate::base::statistics::sidak;
 use crate::strategy::Configured;
 use crate::verify::independent::{Own, independent};
-use crate::verify::{BY_CHANCE, Check, Options, Verifier, charged};
+use crate::verify::{BY_CHANCE, Check, Verifier, VerifyOptions, charged};
 use crate::visibility::stage::Stage;
 use std::sync::OnceLock;
 
@@ -28,10 +28,10 @@ pub struct Gate<'a> {
 }
 
 /// How hard the gate looks at so many strategies.
-pub fn options(strategies: usize, seed: u64) -> Options {
+pub fn options(strategies: usize, seed: u64) -> VerifyOptions {
     // A check fails only if it fails twice.
     let level = sidak(LEVEL, strategies * BY_CHANCE.len()).sqrt();
-    Options { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None }
+    VerifyOptions { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None }
 }
 
 /// The program's arithmetic on a stage against an independent one.

@@ -11,7 +11,7 @@ use super::errors::{Errors, Truth};
 use super::experiment::Runs;
 use super::figure::Figure;
 use super::observer::Observer;
-use super::options::Options;
+use super::options::ComparisonOptions;
 use super::plan::PASSES;
 use super::summary::blank;
 use super::target::{self, Target};
@@ -56,7 +56,7 @@ pub(super) fn is_oracle(strategy: &Configured) -> bool {
 pub(super) fn settle(
     target: &Target<'_>,
     truth: &Truth,
-    options: &Options<'_>,
+    options: &ComparisonOptions<'_>,
     runs: &[Runs],
     summaries: &mut [Summary],
     watch: &dyn Observer,

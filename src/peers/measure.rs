@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How peers are run.
-pub struct Options<'a> {
+pub struct PeerOptions<'a> {
     /// The peers.
     pub peers: &'a [Peer],
     /// The Python that has them.
@@ -69,7 +69,7 @@ pub struct Measured {
 pub fn measure(
     target: &Target<'_>,
     truth: &Truth,
-    options: &Options<'_>,
+    options: &PeerOptions<'_>,
     before: &[Row],
     writer: &mut RowWriter,
     watch: &dyn Observer,
@@ -137,7 +137,7 @@ struct Ground<'a> {
     /// The pixels of those.
     pixels: Vec<u32>,
     folder: PathBuf,
-    options: &'a Options<'a>,
+    options: &'a PeerOptions<'a>,
 }
 
 /// One peer at work.
@@ -190,7 +190,7 @@ impl<'a> Session<'a> {
 
     /// The runs still to do, each with its seed.
     fn runs(&self) -> Vec<(u32, u32)> {
-        let Options { runs, seed, .. } = *self.ground.options;
+        let PeerOptions { runs, seed, .. } = *self.ground.options;
         // 31 bits: what every renderer takes.
         let seed = |run| (RunKey { seed, run }.stream(u32::MAX - 1, 0).bits() >> 33) as u32;
         (0..runs).filter(|run| !self.images.contains_key(run)).map(|run| (run, seed(run))).collect()
@@ -315,7 +315,7 @@ impl<'a> Session<'a> {
     }
 
     fn summary(&self) -> Summary {
-        let Options { spp, times_s, .. } = *self.ground.options;
+        let PeerOptions { spp, times_s, .. } = *self.ground.options;
         let mut rows = self.rows.clone();
         rows.sort_by_key(|row| (row.passes, row.run));
         let runs = Runs { rows, images: self.images.values().cloned().collect() };

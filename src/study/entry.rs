@@ -1,6 +1,6 @@
 //! What is a study, and how is it run?
 
-use super::options::Options;
+use super::options::StudyOptions;
 use super::session::Session;
 use crate::base::error::Result;
 use crate::measure::clock::Cpu;
@@ -30,7 +30,7 @@ impl Entry {
     /// another study in it; a file that cannot be read or written; the user's wish to stop.
     pub fn run(
         &self,
-        options: &Options,
+        options: &StudyOptions,
         command: String,
         folder: &dyn Fn() -> Result<ResultFolder>,
         watch: &dyn Observer,

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | which studies are there? | [`STUDIES`], [`find`] |
 //! | what is a study, and how is it run? | [`Entry`] |
-//! | what may a user change of it? | [`Options`] |
+//! | what may a user change of it? | [`StudyOptions`] |
 //! | how is its question answered? | `strategies`, `visible`, `cutoff`, `scaling`, `soft_shadows`, `offsets` |
 //! | what does it have while it runs? | `session` |
 //! | how good is each strategy within a budget? | [`trial`] |
@@ -41,4 +41,4 @@ mod visible;
 
 pub use entry::Entry;
 pub use list::{STUDIES, find};
-pub use options::Options;
+pub use options::StudyOptions;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// What a user may change; each study reads what makes sense for it.
 #[derive(Clone)]
-pub struct Options {
+pub struct StudyOptions {
     /// The strategies that can be named.
     pub registry: Registry,
     /// The program that runs, where it is not this crate's own.
@@ -41,7 +41,7 @@ pub struct Options {
     pub cache: PathBuf,
 }
 
-impl Options {
+impl StudyOptions {
     /// All of it that decides a study's cells, and the scenes' content.
     pub(super) fn plan<'s>(&self, scenes: impl IntoIterator<Item = &'s Scene>) -> String {
         let Self { overrides, strategies, receivers, pixels, passes, seconds, repeats, max_lights, seed, .. } = self;

@@ -1,6 +1,6 @@
 //! What does a study have while it runs: what was asked for, who watches, and where its rows go?
 
-use super::options::Options;
+use super::options::StudyOptions;
 use super::trial::{Budgets, Trial, Tried};
 use crate::base::error::Result;
 use crate::measure::clock::{Clock, Cpu};
@@ -29,7 +29,7 @@ pub(super) struct Session<'a> {
     pub(super) name: &'static str,
     /// What it asks.
     pub(super) question: &'static str,
-    pub(super) options: &'a Options,
+    pub(super) options: &'a StudyOptions,
     pub(super) command: String,
     pub(super) folder: &'a dyn Fn() -> Result<ResultFolder>,
     pub(super) watch: &'a dyn Observer,
@@ -46,7 +46,7 @@ impl Session<'_> {
         strategies: &[&Configured],
         budgets: Budgets,
     ) -> Result<Vec<Tried>> {
-        let Options { passes, seconds, repeats, seed, .. } = *self.options;
+        let StudyOptions { passes, seconds, repeats, seed, .. } = *self.options;
         let budget = Budget::up_to(passes, seconds);
         let trial = Trial { engine: &self.engine(), target, truth, budget, runs: repeats, seed };
         trial.run(strategies, budgets, self.watch)

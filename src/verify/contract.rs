@@ -4,7 +4,7 @@ use super::calls::{self, count_different};
 use super::check::Check;
 use super::impossible::{IDS, Impossible, VALID};
 use super::observe::{Site, freedom};
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::spread::spread;
 use super::subject::Subject;
 use super::truth::grey;
@@ -153,7 +153,7 @@ pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -
 }
 
 /// The sum of the expected counts against the mean number of picks, at each receiver.
-pub(super) fn picks(sites: &[Site<'_>], options: &Options) -> Check {
+pub(super) fn picks(sites: &[Site<'_>], options: &VerifyOptions) -> Check {
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, sites.len()), freedom(sites));
     let mut worst = (0.0f64, None, String::new());
     for site in sites {

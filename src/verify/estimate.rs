@@ -2,7 +2,7 @@
 
 use super::check::Check;
 use super::observe::{Batch, Site, freedom};
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::weights::ROUNDING;
 use crate::base::statistics::{Moments, sidak, skewness, student_p, student_quantile, unskewed};
 
@@ -128,7 +128,7 @@ impl<'a> Distance<'a> {
 /// Two checks: each receiver on its own, and the mean over all of them.
 ///
 /// The statistic of the first is the natural logarithm of 1 / p, so that one limit serves all degrees of freedom.
-pub(super) fn estimate(sites: &[Site<'_>], options: &Options) -> [Check; 2] {
+pub(super) fn estimate(sites: &[Site<'_>], options: &VerifyOptions) -> [Check; 2] {
     let distance = Distance::new(sites);
     let (worst, pixel, off) = distance.worst();
     let detail = format!(

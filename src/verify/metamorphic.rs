@@ -12,7 +12,7 @@ use super::check::Check;
 use super::estimate::{Distance, surprise};
 use super::impossible::{picks_in_range, picks_valid};
 use super::observe;
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::spread::spread;
 use super::subject::Subject;
 use super::verifier::Verifier;
@@ -110,7 +110,7 @@ pub struct Metamorphic<'a> {
 
 impl<'a> Metamorphic<'a> {
     /// Finds the truth at a few receivers of each copy.
-    pub fn new(copies: &'a Copies, options: Options) -> Self {
+    pub fn new(copies: &'a Copies, options: VerifyOptions) -> Self {
         let whole = Verifier::new(&copies.whole, options);
         let scale = copies.whole.scene().radius();
         let changed = CHANGES.iter().zip(&copies.changed).map(|((_, change, _), stage)| {

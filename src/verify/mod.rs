@@ -22,7 +22,7 @@
 //! | question | where |
 //! |---|---|
 //! | is a strategy right on a stage? | [`Verifier`] |
-//! | how hard is it looked at? | [`Options`], `spread` |
+//! | how hard is it looked at? | [`VerifyOptions`], `spread` |
 //! | what did one check find, and what are the checks called? | [`Check`], [`names()`] |
 //! | which may a right strategy fail? | [`BY_CHANCE`] |
 //! | what does each light really add? | [`Truth`] |
@@ -66,6 +66,6 @@ pub use contract::allocations;
 pub use halves::halves;
 pub use impossible::{picks_in_range, picks_valid};
 pub use names::names;
-pub use options::Options;
+pub use options::VerifyOptions;
 pub use truth::Truth;
 pub use verifier::Verifier;

@@ -2,7 +2,7 @@
 
 /// How hard to look.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct VerifyOptions {
     /// How many receivers, spread over the stage's.
     pub receivers: usize,
     /// Picks to draw at each receiver, about.
@@ -21,13 +21,13 @@ pub struct Options {
     pub allocations: Option<fn() -> u64>,
 }
 
-impl Default for Options {
+impl Default for VerifyOptions {
     fn default() -> Self {
         Self { receivers: 32, draws: 20_000, batches: 200, points: 64, seed: 1, level: 0.01, allocations: None }
     }
 }
 
-impl Options {
+impl VerifyOptions {
     /// A shorter look, where there is much to look at.
     #[must_use]
     pub fn fewer(self) -> Self {

@@ -1,7 +1,7 @@
 //! What is checked, and against what?
 
 use super::calls::calls;
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::truth::Truth;
 use crate::base::random::RunKey;
 use crate::scene::receiver::Receiver;
@@ -12,7 +12,7 @@ use std::ops::Range;
 /// A sampler and what it is checked against.
 pub(super) struct Subject<'v> {
     pub(super) stage: &'v Stage,
-    pub(super) options: &'v Options,
+    pub(super) options: &'v VerifyOptions,
     /// Where it is looked at, and what each light adds there.
     pub(super) receivers: &'v [Receiver],
     pub(super) truths: &'v [Truth],

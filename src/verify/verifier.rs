@@ -3,7 +3,7 @@
 use super::by_chance::by_chance;
 use super::check::Check;
 use super::impossible::{POSSIBLE, possible};
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::spread::spread;
 use super::subject::Subject;
 use super::truth::Truth;
@@ -22,7 +22,7 @@ const MORE: usize = 4;
 /// A stage and what is true at some of its receivers: checks any number of strategies, on any threads.
 pub struct Verifier<'a> {
     pub(super) stage: &'a Stage,
-    pub(super) options: Options,
+    pub(super) options: VerifyOptions,
     pub(super) receivers: Vec<Receiver>,
     pub(super) truths: Vec<Truth>,
     /// The same with other numbers and more of them, made when first needed.
@@ -31,12 +31,12 @@ pub struct Verifier<'a> {
 
 impl<'a> Verifier<'a> {
     /// Finds the truth at `options.receivers` receivers of a stage.
-    pub fn new(stage: &'a Stage, options: Options) -> Self {
+    pub fn new(stage: &'a Stage, options: VerifyOptions) -> Self {
         Self::at(stage, spread(stage.receivers(), options.receivers), options)
     }
 
     /// Finds the truth at receivers of a stage.
-    pub(super) fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: Options) -> Self {
+    pub(super) fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: VerifyOptions) -> Self {
         let truths = receivers.par_iter().map(|at| Truth::new(stage, at, options.points, options.seed)).collect();
         Self { stage, options, receivers, truths, second: OnceLock::new() }
     }
@@ -114,7 +114,7 @@ impl<'a> Verifier<'a> {
     /// The same with other numbers and more of them.
     pub(super) fn second(&self) -> &Self {
         self.second.get_or_init(|| {
-            let options = Options {
+            let options = VerifyOptions {
                 draws: self.options.draws * MORE,
                 points: self.options.points * MORE as u32,
                 seed: hash(&[self.options.seed, u64::from_le_bytes(*b"2nd look")]),

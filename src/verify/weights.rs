@@ -2,7 +2,7 @@
 
 use super::check::Check;
 use super::observe::{PLENTY, Site, freedom};
-use super::options::Options;
+use super::options::VerifyOptions;
 use super::truth::REPEATS;
 use crate::base::statistics::{sidak, student_quantile};
 
@@ -14,11 +14,11 @@ pub(super) const TOTAL: &str = "weights-total";
 pub(super) const ROUNDING: f64 = 1e-5;
 
 /// Two checks: bins of lights, each at each receiver; and all picks together.
-pub(super) fn weights(sites: &[Site<'_>], options: &Options) -> [Check; 2] {
+pub(super) fn weights(sites: &[Site<'_>], options: &VerifyOptions) -> [Check; 2] {
     [bins(sites, options), total(sites, options)]
 }
 
-fn bins(sites: &[Site<'_>], options: &Options) -> Check {
+fn bins(sites: &[Site<'_>], options: &VerifyOptions) -> Check {
     let hypotheses: usize = sites.iter().map(|site| site.bins().len()).sum();
     let freedom = freedom(sites);
     let limit = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), freedom);
@@ -53,7 +53,7 @@ fn bins(sites: &[Site<'_>], options: &Options) -> Check {
 ///
 /// Paired with the number of those picks, whose own mean `picks` checks: what the luck of the draw adds to both
 /// cancels, and for independent picks nothing but rounding is left.
-fn total(sites: &[Site<'_>], options: &Options) -> Check {
+fn total(sites: &[Site<'_>], options: &VerifyOptions) -> Check {
     let known = sites.iter().filter(|site| site.expected().is_some());
     let (mut excess, mut variance, mut count) = (0.0, 0.0, 0.0);
     for site in known {
