@@ -113,11 +113,7 @@ pub fn explain(stage: &Stage, strategy: &Configured, [x, y]: [u32; 2], passes: u
 
 /// The receiver that a pixel sees.
 fn receiver(stage: &Stage, [x, y]: [u32; 2]) -> Result<Receiver> {
-    let (width, height) = stage.view().resolution();
-    if x >= width || y >= height {
-        return Err(Error::Invalid(format!("pixel {x},{y} lies outside the {width} x {height} film")));
-    }
-    match stage.view().pixels()[(y * width + x) as usize] {
+    match stage.view().seen(x, y)? {
         Seen::Receiver(index) => Ok(stage.receivers()[index as usize]),
         Seen::Sky => Err(Error::Invalid(format!("pixel {x},{y} sees the sky, where no light is chosen"))),
         Seen::Emitter(_) | Seen::EmitterBack => {

@@ -7,7 +7,6 @@ use super::scene::SceneOptions;
 use super::terminal::print;
 use super::threads::{pool, threads};
 use super::values::pixel;
-use crate::base::error::Error;
 use crate::base::random::RunKey;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
@@ -66,11 +65,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
 
 /// Replays the passes of one pixel.
 fn one_pixel(plan: &Plan<'_>, x: u32, y: u32, passes: u32) -> anyhow::Result<Outcome> {
-    let (width, height) = plan.stage.view().resolution();
-    if x >= width || y >= height {
-        return Err(Error::Invalid(format!("pixel {x},{y} lies outside the {width} x {height} film")).into());
-    }
-    let seen = plan.stage.view().pixels()[(y * width + x) as usize];
+    let seen = plan.stage.view().seen(x, y)?;
     let Seen::Receiver(index) = seen else {
         print(&format!("pixel {x},{y} sees {}\n", if seen == Seen::Sky { "the sky" } else { "an emitter" }))?;
         return Ok(Outcome::Done);

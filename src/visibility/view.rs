@@ -1,6 +1,7 @@
 //! What does each pixel of the camera see?
 
 use super::occluders::{Met, Occluders};
+use crate::base::error::{Error, Result};
 use crate::scene::Scene;
 use crate::scene::light::{Kind, Light, LightId};
 use crate::scene::receiver::Receiver;
@@ -74,6 +75,18 @@ impl View {
     /// What each pixel sees, row by row from the top.
     pub fn pixels(&self) -> &[Seen] {
         &self.pixels
+    }
+
+    /// What the pixel in column `x` and row `y` sees, both from the upper left corner.
+    ///
+    /// # Errors
+    /// A pixel outside the film.
+    pub fn seen(&self, x: u32, y: u32) -> Result<Seen> {
+        let (width, height) = self.resolution();
+        if x >= width || y >= height {
+            return Err(Error::Invalid(format!("pixel {x},{y} lies outside the {width} x {height} film")));
+        }
+        Ok(self.pixels[(y * width + x) as usize])
     }
 
     /// Shares of the pixels that see the sky and that see an emitter from either side.
