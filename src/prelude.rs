@@ -20,6 +20,5 @@ pub use crate::scene::receiver::Receiver;
 pub use crate::shading::importance::importance;
 pub use crate::strategies::parts::{LightTable, Reservoir};
 pub use crate::strategy::{
-    Arguments, BuildContext, Claim, Configured, Info, LightSampler, Pick, Picks, Registry, Role, Strategy, Tally,
-    Uncounted,
+    Arguments, BuildContext, Claim, Configured, Info, LightSampler, Pick, Picks, Registry, Strategy, Tally, Uncounted,
 };

@@ -18,7 +18,7 @@ use citylights::scene::light::LightId;
 use citylights::scene::receiver::Receiver;
 use citylights::sources::{Overrides, open};
 use citylights::strategy::{
-    Arguments, BuildContext, Claim, Configured, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
+    Arguments, BuildContext, Claim, Configured, Info, LightSampler, Picks, Registry, Strategy, Tally,
 };
 use citylights::study::trial::{Budgets, Trial};
 use citylights::visibility::offset::Offset;
@@ -86,7 +86,6 @@ impl<const HOW: u8> Strategy for Busy<HOW> {
         summary: "does known work before it chooses at random",
         source: "this test",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Uniform<HOW>;
 

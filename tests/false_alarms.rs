@@ -7,7 +7,7 @@
 use citylights::measure::gate::Gate;
 use citylights::sources::Overrides;
 use citylights::sources::recipe::load;
-use citylights::strategy::{Registry, Role};
+use citylights::strategy::{Claim, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use cpu_time::ProcessTime;
@@ -30,7 +30,7 @@ fn right_strategies_pass_the_gate_of_a_hundred_comparisons() {
     let (clock, mut alarms) = (ProcessTime::now(), Vec::new());
     for seed in 1..=COMPARISONS {
         let gate = Gate::new(&stage, "scenes/first-night.toml --resolution 64x36", strategies.len(), seed);
-        for strategy in strategies.iter().filter(|strategy| strategy.info().role != Role::Oracle) {
+        for strategy in strategies.iter().filter(|strategy| strategy.info().claim != Claim::Oracle) {
             if let Err(error) = gate.pass(strategy) {
                 println!("seed {seed}, {}: {error}", strategy.name());
                 alarms.push(seed);

@@ -13,9 +13,7 @@ use citylights::base::error::Result;
 use citylights::base::random::Stream;
 use citylights::scene::light::LightId;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::{
-    Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
-};
+use citylights::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
 use citylights::verify::{Check, Verifier, VerifyOptions, picks_in_range, picks_valid};
 use common::{sixteen, stage};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -51,7 +49,6 @@ impl<const KIND: u8> Strategy for Mutant<KIND> {
         summary: "a choice by flux with one thing wrong",
         source: "this test",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler<KIND>;
 
@@ -175,7 +172,7 @@ fn a_right_strategy_fails_no_check_oftener_than_its_level() {
         let mut failures = std::collections::BTreeMap::new();
         for seed in 100..160 {
             let options = VerifyOptions { receivers: 6, draws: 3_000, batches: 100, seed, ..VerifyOptions::default() };
-            for check in Verifier::new(&stage, options).look(&*sampler, Claim::Unbiased) {
+            for check in Verifier::new(&stage, options).look(&*sampler, &Claim::Unbiased) {
                 *failures.entry(check.name).or_insert(0) += u32::from(!check.passed);
             }
         }

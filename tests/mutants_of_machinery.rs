@@ -17,7 +17,7 @@ use citylights::scene::receiver::Receiver;
 use citylights::scene::{Parts, Scene};
 use citylights::strategy::{
     Arguments, BuildContext, Claim, Configured, Frame, FrameSampler, Info, LightSampler, PerPass, Picks, Registry,
-    Role, Strategy, Tally,
+    Strategy, Tally,
 };
 use citylights::verify::metamorphic::{Copies, Metamorphic};
 use citylights::verify::{Check, Verifier, VerifyOptions};
@@ -45,7 +45,7 @@ const SIXTEEN: u8 = 6;
 const NAMES: [&str; 7] = ["right", "plane", "overflow", "descent", "mix", "metre", "sixteen"];
 
 const fn info(name: &'static str) -> Info {
-    Info { name, summary: "one thing is wrong", source: "this test", claim: Claim::Unbiased, role: Role::Choosing }
+    Info { name, summary: "one thing is wrong", source: "this test", claim: Claim::Unbiased }
 }
 
 /// A choice by weight with one thing wrong.

@@ -12,8 +12,7 @@ use citylights::scene::receiver::Receiver;
 use citylights::scene::{Parts, Scene};
 use citylights::shading::importance::importance;
 use citylights::strategy::{
-    AnySampler, Arguments, Block, BuildContext, Claim, Frame, Info, LightSampler, Picks, Registry, Role, Strategy,
-    Tally,
+    AnySampler, Arguments, Block, BuildContext, Claim, Frame, Info, LightSampler, Picks, Registry, Strategy, Tally,
 };
 use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::stage::Stage;
@@ -22,7 +21,7 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 const fn info(name: &'static str) -> Info {
-    Info { name, summary: "one thing is wrong", source: "this test", claim: Claim::Unbiased, role: Role::Choosing }
+    Info { name, summary: "one thing is wrong", source: "this test", claim: Claim::Unbiased }
 }
 
 /// Runs 0 and 1 the same, 2 and 3 the same.

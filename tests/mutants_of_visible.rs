@@ -11,21 +11,13 @@ use citylights::base::error::Result;
 use citylights::scene::Parts;
 use citylights::scene::receiver::Receiver;
 use citylights::strategies::visible::{self, Visible};
-use citylights::strategy::{
-    Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
-};
+use citylights::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
 use citylights::verify::{Check, Verifier, VerifyOptions};
 use common::{cuboid, ground, panel, point, sixteen, stage};
 use glam::Vec3;
 
 const fn info(name: &'static str) -> Info {
-    Info {
-        name,
-        summary: "learns what it should not",
-        source: "this test",
-        claim: Claim::Unbiased,
-        role: Role::Choosing,
-    }
+    Info { name, summary: "learns what it should not", source: "this test", claim: Claim::Unbiased }
 }
 
 /// Chances that depend on the pick before: a table with one light, changed at every pass.

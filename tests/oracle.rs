@@ -9,13 +9,14 @@ mod common;
 mod runs;
 
 use alone::Alone;
+use citylights::base::claim::Claim;
 use citylights::measure::compare::{Compared, ComparisonOptions, compare};
 use citylights::measure::engine::Engine;
 use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
+use citylights::record::Interval;
 use citylights::record::store::RowWriter;
-use citylights::record::{Claim, Interval};
 use citylights::strategy::Registry;
 use citylights::verify::{Truth, Verifier, VerifyOptions};
 use common::{expected, ground, point, sixteen, stage};

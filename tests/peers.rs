@@ -4,11 +4,12 @@
 #![cfg(all(feature = "cli", unix))]
 
 use assert_cmd::Command;
+use citylights::base::claim::Claim;
 use citylights::base::error::Error;
 use citylights::image::{self, Picture, exr};
 use citylights::peers::{Peer, mask};
 use citylights::record::store;
-use citylights::record::{Claim, RunRecord, Summary};
+use citylights::record::{RunRecord, Summary};
 use citylights::sources::{Overrides, recipe};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};

@@ -1,10 +1,11 @@
 //! Tables, pages and plots follow from the raw rows alone, and drift is noticed.
 #![cfg(feature = "plots")]
 
+use citylights::base::claim::Claim;
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord,
-    SCHEMA, SceneRecord, SharedWork, Summary,
+    Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA,
+    SceneRecord, SharedWork, Summary,
 };
 use citylights::report::{self, Drift, splice};
 use std::fs;
@@ -160,7 +161,7 @@ fn around(mean: f64, share: f64) -> Interval {
 }
 
 fn makers() -> Vec<Maker> {
-    let biased = |why: &str| Claim::Biased { why: why.to_owned() };
+    let biased = |why: &str| Claim::Biased { why: why.to_owned().into() };
     let maker = |strategy, claim, setup_s, pass_s, v, bias2| Maker { strategy, claim, setup_s, pass_s, v, bias2 };
     vec![
         maker("all", Claim::Ceiling, 0.0, 1.7, 0.0, 0.0),

@@ -77,7 +77,7 @@ fn names_hold_the_inner_strategy_and_its_parameters() {
 fn the_claim_is_that_of_the_inner_strategy() {
     let claim = |name: &str| Registry::standard().parse(name).expect(name).info().claim;
     assert_eq!(claim("resampled:from=uniform"), Claim::Unbiased);
-    assert!(matches!(claim("resampled:from=influence"), Claim::Biased(_)));
+    assert!(matches!(claim("resampled:from=influence"), Claim::Biased { .. }));
     assert_eq!(claim("resampled:from=influence"), claim("influence"));
 }
 

@@ -36,7 +36,7 @@ fn reuse_by_one_over_m_is_dark_at_edges_and_shadows() {
     let half = energy.half_width(0.99);
     println!("{name}: energy {:+.4} ±{half:.4}, worst |t| {worst:.1}, limit {limit:.1}", energy.mean - 1.0);
     assert!(energy.mean - 1.0 + half < -0.01 && worst > limit, "{name}: {energy:?}, {worst}");
-    assert!(matches!(Registry::standard().parse(name).expect(name).info().claim, Claim::Biased(_)));
+    assert!(matches!(Registry::standard().parse(name).expect(name).info().claim, Claim::Biased { .. }));
 }
 
 #[test]

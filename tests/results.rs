@@ -1,11 +1,12 @@
 //! Raw results keep every number, and a run that dies keeps its rows.
 #![cfg(feature = "measure")]
 
+use citylights::base::claim::Claim;
 use citylights::record::folder::MARK;
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{
-    Claim, Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord,
-    SCHEMA, SceneRecord, SharedWork, Summary,
+    Counts, Interval, Kind, Machine, Point, Read, Reading, ReferenceRecord, ResultFolder, Row, RunRecord, SCHEMA,
+    SceneRecord, SharedWork, Summary,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -112,7 +113,7 @@ fn record() -> RunRecord {
                 },
                 ..Summary::blank(
                     "range:cutoff=0.5".to_owned(),
-                    Claim::Biased { why: "drops lights below half a display step".to_owned() },
+                    Claim::Biased { why: "drops lights below half a display step".into() },
                     true,
                 )
             }],

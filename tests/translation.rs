@@ -9,7 +9,7 @@ use citylights::scene::light::Shape;
 use citylights::scene::{Parts, Scene};
 use citylights::sources::Overrides;
 use citylights::sources::recipe::parse;
-use citylights::strategy::{BuildContext, Claim, Registry, Role};
+use citylights::strategy::{BuildContext, Claim, Registry};
 use citylights::study::quality::{Finding, quality};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
@@ -207,7 +207,7 @@ fn baked_coordinates_change_a_picture_as_much_as_rounding_them() {
 fn variances(stage: &Stage) -> Vec<(String, f64)> {
     let mut found = Vec::new();
     for info in Registry::standard().infos() {
-        if info.role != Role::Choosing || info.claim != Claim::Unbiased {
+        if info.claim != Claim::Unbiased {
             continue;
         }
         let strategy = Registry::standard().parse(info.name).expect("a name of the registry");

@@ -1,6 +1,7 @@
 //! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
 //! statistics, intervals, rankings, relative error, colour, files, errors.
 
+pub mod claim;
 pub mod colour;
 pub mod counts;
 pub mod discrete;

@@ -12,13 +12,14 @@
 use super::quantity::{CPU_TIME, Reported, criterion, flat};
 use super::scenes::{name, stage};
 use super::timing::part_of;
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::measure::engine::{Block, build_seed};
 use crate::measure::target::{SQUARE, spread, squares};
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::strategy::{BuildContext, Registry, Role};
+use crate::strategy::{BuildContext, Registry};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use std::path::Path;
 
@@ -44,7 +45,7 @@ fn bench(criterion: &mut Criterion<Reported>, registry: &Registry, file: &Path) 
     let (scene, stage) = (name(file), stage(file)?);
     let context = BuildContext { stage: &stage, seed: build_seed(KEY) };
     eprintln!("{scene}: {} lights, {} to choose from", stage.scene().lights().len(), stage.lights().len());
-    for strategy in registry.all()?.into_iter().filter(|one| one.info().role != Role::Oracle) {
+    for strategy in registry.all()?.into_iter().filter(|one| one.info().claim != Claim::Oracle) {
         let name = strategy.name();
         let mut group = flat(criterion, "setup");
         let block = |receivers, passes| Block { stage: &stage, receivers, strategy: &strategy, key: KEY, passes };

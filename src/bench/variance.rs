@@ -22,7 +22,7 @@ use crate::measure::reference::Reference;
 use crate::measure::target::{Target, spread};
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::strategy::{BuildContext, Claim, Registry};
+use crate::strategy::{BuildContext, Registry};
 use criterion::{BenchmarkId, Criterion};
 use glam::Vec3;
 use std::path::Path;
@@ -70,9 +70,9 @@ fn bench(criterion: &mut Criterion<Reported>, registry: &Registry, file: &Path, 
             continue;
         }
         let truth = &reference.truth;
-        let (quantity, centre) = match strategy.info().claim {
-            Claim::Unbiased => ("variance", image(1, 0, OWN_MEAN)),
-            Claim::Biased(_) => ("mse", truth.mean().to_vec()),
+        let (quantity, centre) = match strategy.info().claim.bias() {
+            None => ("variance", image(1, 0, OWN_MEAN)),
+            Some(_) => ("mse", truth.mean().to_vec()),
         };
         let error = |image: &[Vec3]| {
             truth.mean_over(|i| {

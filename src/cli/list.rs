@@ -4,7 +4,7 @@ use super::home::Home;
 use super::outcome::Outcome;
 use super::terminal::print;
 use crate::base::error::Error;
-use crate::strategy::{Claim, Configured};
+use crate::strategy::Configured;
 use crate::study::{Entry, STUDIES};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -51,9 +51,9 @@ struct Item {
 
 fn strategy(configured: &Configured) -> Item {
     let (name, info) = (configured.name(), configured.info());
-    let claim = match info.claim {
-        Claim::Unbiased => "unbiased".to_owned(),
-        Claim::Biased(why) => format!("biased: {why}"),
+    let claim = match info.claim.bias() {
+        None => "unbiased".to_owned(),
+        Some(why) => format!("biased: {why}"),
     };
     let mut text = format!("{name}\n    {}\n    {claim}\n    source: {}\n", info.summary, info.source);
     for p in configured.parameters() {

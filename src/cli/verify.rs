@@ -13,7 +13,7 @@ use crate::measure::gate;
 use crate::measure::observer::Observer;
 use crate::scene::{Parts, Scene};
 use crate::sources::small;
-use crate::strategy::{Claim, Configured};
+use crate::strategy::Configured;
 use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
 use crate::verify::{self, BY_CHANCE, Check, Verifier, VerifyOptions};
 use clap::Args;
@@ -166,7 +166,7 @@ impl Found {
             }
             Ok(checks)
         });
-        let biased = strategy.info().claim != Claim::Unbiased;
+        let biased = strategy.info().claim.bias().is_some();
         Self { strategy: strategy.name().to_owned(), checks, biased }
     }
 

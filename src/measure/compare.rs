@@ -12,11 +12,12 @@ use super::plan::{self, Pilot};
 use super::reference::{Reference, Wanted, scene_hash};
 use super::summary::{self, bias};
 use super::target::Target;
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::base::statistics::sidak;
 use crate::record::store::RowWriter;
-use crate::record::{Claim, Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Summary};
-use crate::strategy::{Configured, Role};
+use crate::record::{Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Summary};
+use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 
 pub use super::options::ComparisonOptions;
@@ -118,7 +119,7 @@ fn pilots(target: &Target<'_>, options: &ComparisonOptions<'_>, watch: &dyn Obse
 /// own noise; never below what f32 can hold.
 fn accuracy(options: &ComparisonOptions<'_>, pilots: &[Option<Trial>], ladders: &[Vec<u32>]) -> f64 {
     let best = options.strategies.iter().zip(pilots).zip(ladders).filter_map(|((strategy, pilot), ladder)| {
-        let pilot = pilot.as_ref()?.as_ref().ok().filter(|_| strategy.info().role == Role::Choosing)?;
+        let pilot = pilot.as_ref()?.as_ref().ok().filter(|_| strategy.info().claim.chooses())?;
         Some(pilot.expected_rel_mse(*ladder.last()?))
     });
     best.fold(1e-2, f64::min).max(1e-8) / 150.0

@@ -3,7 +3,8 @@
 use super::curve::Curve;
 use super::figure::Figure;
 use super::summary::Jackknife;
-use crate::record::{Claim, Interval, Read, Reading, Summary};
+use crate::base::claim::Claim;
+use crate::record::{Interval, Read, Reading, Summary};
 
 /// The relMSE that times are given to.
 pub const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];

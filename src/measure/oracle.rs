@@ -16,6 +16,7 @@ use super::plan::PASSES;
 use super::summary::blank;
 use super::target::{self, Target};
 use super::work::nominal_s;
+use crate::base::claim::Claim;
 use crate::base::counts::Counts;
 use crate::base::draws::{Points, Sequence};
 use crate::base::error::Result;
@@ -26,7 +27,7 @@ use crate::render::exact::shadowed;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{AnySampler, BuildContext, Configured, Pick, Role, Source};
+use crate::strategy::{AnySampler, BuildContext, Configured, Pick, Source};
 use crate::visibility::stage::Stage;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -49,7 +50,7 @@ const ORACLE_S: f64 = 12.0;
 
 /// Whether a strategy is run here and not against the clock.
 pub(super) fn is_oracle(strategy: &Configured) -> bool {
-    strategy.info().role == Role::Oracle
+    strategy.info().claim == Claim::Oracle
 }
 
 /// Runs the oracles among the strategies, and gives every summary its ratio to the first of them.

@@ -5,23 +5,18 @@ use super::experiment::Runs;
 use super::figure::{self, CONFIDENCE, Figure, error, tail};
 use super::plan::Pilot;
 use super::spread::{Parts, Spread};
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::base::interval::{Bounds, Tail};
 use crate::base::statistics::{Moments, normal_quantile};
-use crate::record::{Claim, Interval, Point, Row, Summary};
-use crate::strategy::{Claim as StrategyClaim, Configured, Role};
+use crate::record::{Interval, Point, Row, Summary};
+use crate::strategy::Configured;
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub fn blank(strategy: &Configured) -> Summary {
-    let info = strategy.info();
-    let claim = match (info.role, info.claim) {
-        (Role::Floor, _) => Claim::Floor,
-        (Role::Ceiling, _) => Claim::Ceiling,
-        (Role::Oracle, _) => Claim::Oracle,
-        (Role::Choosing, StrategyClaim::Unbiased) => Claim::Unbiased,
-        (Role::Choosing, StrategyClaim::Biased(why)) => Claim::Biased { why: why.to_owned() },
-    };
-    Summary::blank(strategy.name().to_owned(), claim, info.role == Role::Choosing)
+    let claim = strategy.info().claim;
+    let chooses = claim.chooses();
+    Summary::blank(strategy.name().to_owned(), claim, chooses)
 }
 
 /// The summary of a strategy from its pilot, or why there is none, and its runs; without a pilot, of one that is not run

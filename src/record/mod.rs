@@ -43,4 +43,4 @@ pub use row::Row;
 pub use run::{Machine, RunRecord};
 pub use scene::{ReferenceRecord, SceneRecord, SharedWork};
 pub use schema::SCHEMA;
-pub use summary::{Claim, Point, Read, Reading, Summary};
+pub use summary::{Point, Read, Reading, Summary};

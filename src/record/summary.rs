@@ -2,56 +2,9 @@
 
 use super::interval::Interval;
 use super::number;
+use crate::base::claim::Claim;
 use crate::base::counts::Counts;
 use serde::{Deserialize, Serialize};
-
-/// What a strategy says about its own estimate.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
-pub enum Claim {
-    /// Right on average.
-    Unbiased,
-    /// Off on average, by design.
-    Biased {
-        /// What is left out or approximated.
-        why: String,
-    },
-    /// Does nothing (`null`): its time is the harness's own.
-    Floor,
-    /// Takes every light (`all`): no choice, no noise from choosing.
-    Ceiling,
-    /// Chooses by what it cannot know without paying for it (`oracle`): the least error of any choice, never timed.
-    Oracle,
-    /// Another renderer's image of the exported scene: it says nothing here, its bias is measured.
-    External {
-        /// Its name and version, as far as they are known.
-        renderer: String,
-    },
-}
-
-impl Claim {
-    /// Whether its bias is measured and printed: it claims one, or claims nothing.
-    pub fn may_be_biased(&self) -> bool {
-        matches!(self, Self::Biased { .. }) || self.is_external()
-    }
-
-    /// It in a word, as tables show it.
-    pub fn word(&self) -> &'static str {
-        match self {
-            Self::Unbiased => "unbiased",
-            Self::Biased { .. } => "biased",
-            Self::Floor => "floor",
-            Self::Ceiling => "ceiling",
-            Self::Oracle => "oracle",
-            Self::External { .. } => "external",
-        }
-    }
-
-    /// Whether another renderer makes it.
-    pub fn is_external(&self) -> bool {
-        matches!(self, Self::External { .. })
-    }
-}
 
 /// One budget of a strategy: a point of its curve of error against time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,8 @@
 use super::number::{Estimate, NONE, grouped, round};
 use super::order::measured;
 use super::sheet::{Column, Sheet};
-use crate::record::{Claim, Interval, Read, Reading, SceneRecord, Summary};
+use crate::base::claim::Claim;
+use crate::record::{Interval, Read, Reading, SceneRecord, Summary};
 
 /// Marks the column that ranks.
 const RANKS: &str = "▲";

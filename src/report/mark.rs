@@ -1,7 +1,7 @@
 //! How a strategy is told from the others in a plot: colour, shape, and hollow and dashed when it is biased; other
 //! renderers are dotted.
 
-use crate::record::Claim;
+use crate::base::claim::Claim;
 use plotters::prelude::*;
 use plotters::style::Color;
 

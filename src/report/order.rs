@@ -1,6 +1,7 @@
 //! In which order do strategies stand?
 
-use crate::record::{Claim, SceneRecord, Summary};
+use crate::base::claim::Claim;
+use crate::record::{SceneRecord, Summary};
 use std::cmp::Ordering;
 
 /// Whether the strategy ran to its end, so that its numbers mean something.

@@ -3,8 +3,9 @@
 use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::{Line, Mark};
 use super::order::{measured, ordered};
+use crate::base::claim::Claim;
 use crate::base::error::Result;
-use crate::record::{Claim, Point, SceneRecord, Summary};
+use crate::record::{Point, SceneRecord, Summary};
 
 /// The plot of a scene as SVG: relMSE over receivers against CPU seconds, set-up included, means over runs with 95 %
 /// intervals.

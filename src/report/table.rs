@@ -10,7 +10,8 @@ use super::number::{Estimate, NONE, bytes, digits, percent, short};
 use super::order::{measured, ordered};
 use super::rows::Rows;
 use super::sheet::{Column, Sheet, WIDTH, broken};
-use crate::record::{Claim, Interval, Row, RunRecord, SceneRecord, Summary};
+use crate::base::claim::Claim;
+use crate::record::{Interval, Row, RunRecord, SceneRecord, Summary};
 use std::fmt::Write;
 
 /// The tables of a scene in plain text, at most 140 columns wide, under a few lines on what was measured.

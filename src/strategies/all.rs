@@ -4,7 +4,7 @@ use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// Takes every light in every pass, one point each: exact after one pass where lights have no extent.
 pub struct All;
@@ -14,8 +14,7 @@ impl Strategy for All {
         name: "all",
         summary: "takes every light, one point and one shadow ray each",
         source: "the sum itself",
-        claim: Claim::Unbiased,
-        role: Role::Ceiling,
+        claim: Claim::Ceiling,
     };
     type Sampler = Lights;
 

@@ -17,7 +17,7 @@ use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
 use crate::shading::by_angle::seen;
 use crate::shading::importance::importance;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 use crate::visibility::stage::Stage;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -34,7 +34,6 @@ impl Strategy for Allocate {
         summary: "takes every light; shares out points on triangles by solid angle, radiance and albedo",
         source: "the lecture's heuristic, made unbiased by Russian roulette (Arvo and Kirk, SIGGRAPH 1990)",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

@@ -8,7 +8,7 @@ use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 use crate::visibility::influence_tree::InfluenceTree;
 
 /// Takes every light in range, one point each.
@@ -21,8 +21,7 @@ impl Strategy for Influence {
         name: "influence",
         summary: "takes every light in range, listed by a hierarchy over influence volumes",
         source: "the lecture, rows 16 and 17; Olsson, Billeter, Assarsson, HPG 2012",
-        claim: Claim::Biased("lights out of range are dropped"),
-        role: Role::Choosing,
+        claim: Claim::biased("lights out of range are dropped"),
     };
     type Sampler = Sampler;
 

@@ -5,7 +5,7 @@
 use super::parts::in_range::InRange;
 use super::parts::range::Range;
 use crate::base::error::Result;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, Role, Strategy};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, Strategy};
 
 /// `picks` independent draws among the lights in range, by what arrives from each.
 pub struct InfluencePick {
@@ -18,8 +18,7 @@ impl Strategy for InfluencePick {
         name: "influence-pick",
         summary: "picks among the lights in range by what arrives from them",
         source: "the lecture, row 19",
-        claim: Claim::Biased("lights out of range are dropped"),
-        role: Role::Choosing,
+        claim: Claim::biased("lights out of range are dropped"),
     };
     type Sampler = InRange;
 

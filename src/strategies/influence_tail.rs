@@ -18,7 +18,7 @@ use crate::scene::Scene;
 use crate::scene::cutoff::Cutoff;
 use crate::scene::light::{Light, LightId};
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 use std::sync::Arc;
 
 /// `picks` weighted draws in range and `tail` draws by influence radius out of it.
@@ -34,7 +34,6 @@ impl Strategy for InfluenceTail {
         summary: "influence-pick made unbiased: lights out of range are drawn by their radius",
         source: "this project",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

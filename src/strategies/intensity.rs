@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 use std::sync::Arc;
 
 /// `picks` independent draws, each light with a probability in proportion to its unshadowed irradiance.
@@ -24,7 +24,6 @@ impl Strategy for Intensity {
         summary: "weighs every light by what arrives from it, nothing in between",
         source: "the lecture, row 18; Shirley, Wang, Zimmerman, ACM TOG 15(1), 1996",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

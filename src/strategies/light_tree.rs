@@ -12,7 +12,7 @@
 
 use super::parts::walks::{OPEN, Sampler, Walks};
 use crate::base::error::Result;
-use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, Role, Strategy};
+use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, Strategy};
 use crate::tree::{Distance, Facing, How, Weighing};
 
 /// `picks` walks down a tree.
@@ -28,7 +28,6 @@ impl Strategy for LightTree {
         summary: "walks down a tree of clusters, each weighed at the receiver",
         source: "Conty Estevez and Kulla, Proc. ACM CGIT 1(2), 2018; wide nodes, box horizons and peaks: this project",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Box<dyn AnySampler>;
 

@@ -19,9 +19,7 @@ use crate::base::random::Stream;
 use crate::base::triangle::CENTROID;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
-use crate::strategy::{
-    Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Role, Strategy, Tally, Uncounted,
-};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Strategy, Tally, Uncounted};
 use crate::tree::{Below, How, Tree};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -38,8 +36,7 @@ impl Strategy for Lightcuts {
         name: "lightcuts",
         summary: "clusters lights until each cluster's error is out of sight, one light standing for each",
         source: "Walter, Fernandez, Arbree, Bala, Donikian, Greenberg, SIGGRAPH 2005",
-        claim: Claim::Biased("one fixed light stands for each cluster"),
-        role: Role::Choosing,
+        claim: Claim::biased("one fixed light stands for each cluster"),
     };
     type Sampler = Sampler;
 

@@ -3,7 +3,7 @@
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// Picks no light.
 pub struct Null;
@@ -13,8 +13,7 @@ impl Strategy for Null {
         name: "null",
         summary: "picks nothing: the harness's own cost",
         source: "the harness",
-        claim: Claim::Biased("no light is ever picked"),
-        role: Role::Floor,
+        claim: Claim::Floor,
     };
     type Sampler = Self;
 

@@ -15,9 +15,7 @@ use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::scene::light::{Kind, LightId};
 use crate::scene::receiver::Receiver;
-use crate::strategy::{
-    Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Role, Strategy, Tally, Uncounted,
-};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Strategy, Tally, Uncounted};
 
 /// About so many points on a triangle that faces a receiver, on average: shared out by what each would add.
 const POINTS: f64 = 9.0;
@@ -35,8 +33,7 @@ impl Strategy for Oracle {
         name: "oracle",
         summary: "weighs every light with its shadow ray already cast: the floor of all choice, never timed",
         source: "the integrand itself; Rath et al., ACM TOG 39(4), 2020",
-        claim: Claim::Unbiased,
-        role: Role::Oracle,
+        claim: Claim::Oracle,
     };
     type Sampler = Sampler;
 

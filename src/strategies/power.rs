@@ -6,7 +6,7 @@ use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::light::Light;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// `picks` independent draws, each light with a probability in proportion to its luminous flux.
 ///
@@ -23,7 +23,6 @@ impl Strategy for Power {
         summary: "picks lights by their flux, from an alias table",
         source: "Shirley, Wang, Zimmerman, ACM TOG 15(1), 1996; Vose, IEEE TSE 17(9), 1991",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

@@ -8,7 +8,7 @@ use super::parts::candidates::{Candidates, Pool, Recipe, Value};
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Strategy, Tally};
 
 /// `picks` lights chosen among the candidates of `m` calls.
 pub struct Resampled {
@@ -23,7 +23,6 @@ impl Strategy for Resampled {
         summary: "draws candidates from another strategy and picks among them by what they add here",
         source: "Talbot, Cline, Egbert, EGSR 2005",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

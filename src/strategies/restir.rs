@@ -26,8 +26,7 @@ use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{
-    Arguments, BuildContext, Claim, Frame, FrameSampler, Info, LightSampler, PerPass, Pick, Picks, Role, Strategy,
-    Tally,
+    Arguments, BuildContext, Claim, Frame, FrameSampler, Info, LightSampler, PerPass, Pick, Picks, Strategy, Tally,
 };
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -61,7 +60,6 @@ impl Strategy for Restir {
         summary: "resampled, then a choice among the candidates of neighbours in the image",
         source: "Bitterli et al., ACM TOG 39(4), 2020; Lin et al., ACM TOG 41(4), 2022",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = PerPass<Sampler>;
 
@@ -82,7 +80,7 @@ impl Strategy for Restir {
     fn info(&self) -> Info {
         let claim = match (self.recipe.claim(), self.combine) {
             (Claim::Unbiased, Combine::OneOverM) => {
-                Claim::Biased("counts candidates that a neighbour could not have given as if it could")
+                Claim::biased("counts candidates that a neighbour could not have given as if it could")
             }
             (claim, _) => claim,
         };

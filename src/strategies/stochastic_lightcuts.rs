@@ -12,7 +12,7 @@
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally, Uncounted};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally, Uncounted};
 use crate::tree::{Cut, Distance, How, Memory, Tree};
 
 /// One pick from each of `cut` clusters.
@@ -26,7 +26,6 @@ impl Strategy for StochasticLightcuts {
         summary: "picks a light from each cluster of a cut that is chosen by what clusters could add",
         source: "Yuksel, HPG 2019; Lin and Yuksel, Proc. ACM CGIT 3(1) (I3D), 2020",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

@@ -5,7 +5,7 @@ use crate::base::error::Result;
 use crate::base::random::below;
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// `picks` independent draws, each light with probability 1/N.
 pub struct Uniform {
@@ -18,7 +18,6 @@ impl Strategy for Uniform {
         summary: "picks any light with the same chance",
         source: "Shirley, Wang, Zimmerman, ACM TOG 15(1), 1996",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

@@ -4,7 +4,8 @@ use super::any_sampler::AnySampler;
 use super::arguments::Arguments;
 use super::configured::AnyStrategy;
 use super::context::BuildContext;
-use super::info::{Info, Role};
+use super::info::Info;
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 
 /// How lights are chosen: the parameters, before any scene is known.
@@ -24,7 +25,6 @@ use crate::base::error::Result;
 ///         summary: "picks any light",
 ///         source: "an example",
 ///         claim: Claim::Unbiased,
-///         role: Role::Choosing,
 ///     };
 ///     type Sampler = Lights;
 ///     fn configure(_: &mut Arguments<'_>) -> Result<Self> {
@@ -74,12 +74,12 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     /// Whether other strategies may take candidates from it: it chooses at one receiver, without a view of the frame,
     /// and takes none itself.
     fn gives_candidates(&self) -> bool {
-        Self::INFO.role == Role::Choosing
+        Self::INFO.claim.chooses()
     }
     /// Whether it chooses by the same probabilities in the same scene in another unit of length: not if these depend on a
     /// length in metres, as that which its own shadow rays keep off surfaces.
     fn scale_free(&self) -> bool {
-        Self::INFO.role != Role::Oracle
+        Self::INFO.claim != Claim::Oracle
     }
     /// Builds the sampler: the set-up phase.
     ///

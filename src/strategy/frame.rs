@@ -44,7 +44,6 @@ impl<'a> Frame<'a> {
 ///         summary: "picks one light a pass",
 ///         source: "an example",
 ///         claim: Claim::Unbiased,
-///         role: Role::Choosing,
 ///     };
 ///     type Sampler = PerPass<Lights>;
 ///     fn configure(_: &mut Arguments<'_>) -> Result<Self> {

@@ -39,6 +39,7 @@ mod source;
 mod sweep;
 mod tally;
 
+pub use crate::base::claim::Claim;
 pub use any_sampler::{AnySampler, Block, PerPass, Worker, blocks};
 pub use arguments::Arguments;
 pub use buffer::PickBuffer;
@@ -46,7 +47,7 @@ pub use configured::Configured;
 pub use context::BuildContext;
 pub use contract::Strategy;
 pub use frame::{Frame, FrameSampler};
-pub use info::{Claim, Info, Role};
+pub use info::Info;
 pub use parameter::Parameter;
 pub use pick::{Pick, Picks};
 pub use registry::Registry;

@@ -3,14 +3,15 @@
 use super::arguments::Arguments;
 use super::configured::{AnyStrategy, Configured};
 use super::contract::Strategy;
-use super::info::{Info, Role};
+use super::info::Info;
 use super::sweep;
+use crate::base::claim::Claim;
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
 use crate::base::names;
 
 /// A strategy that can be named.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Entry {
     info: Info,
     make: fn(&mut Arguments<'_>) -> Result<Box<dyn AnyStrategy>>,
@@ -43,8 +44,8 @@ impl Registry {
     }
 
     /// What each is, with its parameters at their defaults.
-    pub fn infos(&self) -> impl Iterator<Item = Info> {
-        self.entries.iter().map(|entry| entry.info)
+    pub fn infos(&self) -> impl Iterator<Item = &Info> {
+        self.entries.iter().map(|entry| &entry.info)
     }
 
     /// Reads `name` or `name:parameter=value,...`.
@@ -135,7 +136,7 @@ impl Registry {
 
 /// The parameter of every strategy that draws numbers: how they are spread over a pixel's passes.
 fn points(info: &Info, arguments: &mut Arguments<'_>) -> Result<Points> {
-    if info.role == Role::Floor {
+    if info.claim == Claim::Floor {
         return Ok(Points::Random);
     }
     let meaning = "how choices and points on lights are spread over a pixel's passes";

@@ -10,14 +10,14 @@ use super::fit::PowerLaw;
 use super::session::Session;
 use super::sizes::sizes;
 use super::trial::{Budgets, Tried};
+use crate::base::claim::Claim;
 use crate::base::error::{Error, Result};
 use crate::measure::summary::blank;
 use crate::measure::target::Target;
-use crate::record::Claim;
 use crate::record::study::{Cell, Cells, Format, PlotRecord, Study, TableRecord};
 use crate::record::study_store::StudyWriter;
 use crate::sources::{self, Overrides};
-use crate::strategy::{Configured, Role};
+use crate::strategy::Configured;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -150,7 +150,7 @@ fn at_size(
 ) -> Result<()> {
     let scene = sources::open(path, &Overrides { lights: Some(lights), ..session.options.overrides.clone() })?;
     // Every arrival of the oracle takes as many rays as the truth.
-    let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().role != Role::Oracle;
+    let within = |strategy: &&Configured| lights <= MOST_OF_ORACLE || strategy.info().claim != Claim::Oracle;
     let strategies: Vec<&Configured> = strategies.iter().filter(within).collect();
     let key = [("lights", (scene.lights().len() as u64).into())];
     if writer.has("growth", &key, strategies.len()) {

@@ -2,6 +2,7 @@
 
 use super::options::StudyOptions;
 use super::trial::{Budgets, Trial, Tried};
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::measure::clock::{Clock, Cpu};
 use crate::measure::engine::Engine;
@@ -16,7 +17,7 @@ use crate::record::study_store::StudyWriter;
 use crate::record::{Machine, ResultFolder};
 use crate::report;
 use crate::scene::Scene;
-use crate::strategy::{Configured, Role};
+use crate::strategy::Configured;
 use std::path::{Path, PathBuf};
 
 /// Most counted work of one reference, in nominal seconds: it takes rays for every light, so that among many lights
@@ -115,7 +116,7 @@ impl Session<'_> {
             return self.options.registry.parse_list(list);
         }
         let own = self.options.registry.infos();
-        let own = own.filter(|info| matches!(info.role, Role::Choosing | Role::Oracle)).map(|info| info.name);
+        let own = own.filter(|info| info.claim.chooses() || info.claim == Claim::Oracle).map(|info| info.name);
         own.chain(variants.iter().copied()).map(|name| self.options.registry.parse(name)).collect()
     }
 

@@ -5,6 +5,7 @@
 //!
 //! An oracle is never timed, and looks at each receiver alone: it is run where errors are taken, or at some of these.
 
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::measure::engine::Engine;
 use crate::measure::errors::Truth;
@@ -14,8 +15,8 @@ use crate::measure::observer::Observer;
 use crate::measure::plan::{Budget, Pilot, RECEIVERS};
 use crate::measure::summary;
 use crate::measure::target::{Target, places};
-use crate::record::{Claim, Interval, Row, Summary};
-use crate::strategy::{Configured, Role};
+use crate::record::{Interval, Row, Summary};
+use crate::strategy::Configured;
 
 /// What strategies are tried on, and how.
 #[derive(Clone, Copy)]
@@ -124,7 +125,7 @@ impl Trial<'_> {
 }
 
 fn is_oracle(strategy: &Configured) -> bool {
-    strategy.info().role == Role::Oracle
+    strategy.info().claim == Claim::Oracle
 }
 
 impl Tried {

@@ -13,6 +13,7 @@ use super::scenes::told_apart;
 use super::session::Session;
 use super::sizes::sizes;
 use super::trial::{Budgets, Tried};
+use crate::base::claim::Claim;
 use crate::base::error::Result;
 use crate::measure::figure::{Figure, error, mean};
 use crate::measure::plan::budgets;
@@ -23,7 +24,7 @@ use crate::record::study_store::StudyWriter;
 use crate::record::{Interval, Row};
 use crate::scene::Scene;
 use crate::sources::{self, Overrides};
-use crate::strategy::{Configured, Role};
+use crate::strategy::Configured;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use std::path::Path;
@@ -124,7 +125,7 @@ fn step_by_step(
     steps: &[(&str, Configured)],
 ) -> Result<()> {
     let few = stage.scene().lights().len() <= MOST_OF_ORACLE;
-    let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().role != Role::Oracle).collect();
+    let steps: Vec<_> = steps.iter().filter(|(_, of)| few || of.info().claim != Claim::Oracle).collect();
     let budgets: Vec<u32> = budgets(session.options.passes).collect();
     if writer.has(table, &[], steps.len() * budgets.len()) {
         return Ok(());

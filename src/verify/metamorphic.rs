@@ -24,7 +24,7 @@ use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::scene::{Parts, Scene};
 use crate::sources::small::{cuboid, point};
-use crate::strategy::{AnySampler, BuildContext, Claim, Configured};
+use crate::strategy::{AnySampler, BuildContext, Configured};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
 use glam::{DQuat, DVec3, Vec3};
@@ -159,7 +159,7 @@ impl<'a> Metamorphic<'a> {
         let samplers = self.changed.iter().map(build).collect::<Result<Vec<_>>>()?;
         let pairs = || self.changed.iter().zip(&samplers);
         let mut checks = vec![valid(pairs().map(|(verifier, sampler)| verifier.subject(&**sampler)))];
-        if strategy.info().claim != Claim::Unbiased || !checks[0].passed {
+        if strategy.info().claim.bias().is_some() || !checks[0].passed {
             return Ok(checks);
         }
         // A choice by shadow rays depends on how far they keep off surfaces, which is no length of the scene.

@@ -53,7 +53,7 @@ impl<'a> Verifier<'a> {
     pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let build = || strategy.build(BuildContext { stage: self.stage, seed: self.options.seed });
         let sampler = build()?;
-        let mut checks = self.verify_sampler(&*sampler, strategy.info().claim);
+        let mut checks = self.verify_sampler(&*sampler, &strategy.info().claim);
         if checks.iter().all(|check| check.passed || !POSSIBLE.contains(&check.name)) {
             checks.push(arrival::order(self.stage.receivers(), &self.receivers, self.options.seed, build)?);
         }
@@ -62,7 +62,7 @@ impl<'a> Verifier<'a> {
 
     /// Checks a sampler that was built for the stage and claims so much. What takes more than one sampler to see,
     /// [`verify`](Self::verify) checks.
-    pub fn verify_sampler(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
+    pub fn verify_sampler(&self, sampler: &dyn AnySampler, claim: &Claim) -> Vec<Check> {
         let mut checks = self.look(sampler, claim);
         if checks.iter().any(|check| !check.passed && by_chance(check)) {
             let second = self.second().look(sampler, claim);
@@ -76,7 +76,7 @@ impl<'a> Verifier<'a> {
     }
 
     /// One look: every check fails a right sampler with the chance `options.level`.
-    pub fn look(&self, sampler: &dyn AnySampler, claim: Claim) -> Vec<Check> {
+    pub fn look(&self, sampler: &dyn AnySampler, claim: &Claim) -> Vec<Check> {
         let subject = self.subject(sampler);
         let mut impossible = contract::impossible(&subject);
         // An id that is out of range has nothing to be looked up, and no number is near one that is none.
@@ -92,15 +92,15 @@ impl<'a> Verifier<'a> {
         checks.extend(contract::exact(&subject));
         checks.push(seeds::another(&subject));
         checks.push(contract::picks(&sites, &self.options));
-        match claim {
-            Claim::Unbiased => {
+        match claim.bias() {
+            None => {
                 // A biased strategy's pick may stand for other lights than itself, as those of lightcuts do.
                 checks.push(contract::reciprocal(&sites));
                 checks.push(coverage::coverage(self.stage.scene(), &sites));
                 checks.extend(weights::weights(&sites, &self.options));
                 checks.extend(estimate::estimate(&sites, &self.options));
             }
-            Claim::Biased(why) => checks.push(estimate::bias(&sites, why)),
+            Some(why) => checks.push(estimate::bias(&sites, why)),
         }
         checks
     }

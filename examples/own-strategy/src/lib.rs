@@ -12,7 +12,6 @@ impl Strategy for Systematic {
         summary: "picks several lights at even steps over what arrives from all of them",
         source: "Madow, Ann. Math. Stat. 20(3), 1949",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 

@@ -98,7 +98,7 @@ const RESERVED: [&str; 59] = [
 ];
 
 /// Types that the crate's code names already.
-const TAKEN: [&str; 26] = [
+const TAKEN: [&str; 25] = [
     "AliasTable",
     "Arguments",
     "BuildContext",
@@ -119,7 +119,6 @@ const TAKEN: [&str; 26] = [
     "Registry",
     "Reservoir",
     "Result",
-    "Role",
     "Sampler",
     "Scene",
     "Strategy",

@@ -15,7 +15,7 @@ mod sink;
 
 use super::parts::range::Range;
 use crate::base::error::Result;
-use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, PerPass, Role, Strategy};
+use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, PerPass, Strategy};
 
 // What `stability` holds to more digits.
 #[cfg(feature = "measure")]
@@ -43,7 +43,6 @@ impl Strategy for StochasticCull {
         summary: "takes some of the lights in a random range, which on average is the whole scene",
         source: "Tokuyoshi and Harada, JCGT 5(1), 2016; roulette: the same, Comput. Graph. Forum 38(7), 2019",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Box<dyn AnySampler>;
 

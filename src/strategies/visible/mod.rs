@@ -39,7 +39,7 @@ use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::base::random::hash;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Role, Strategy, Tally, Uncounted};
+use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally, Uncounted};
 use crate::tree::{Facing, How, USED_UP};
 use cells::Cells;
 use learned::{Lesson, School, Table, WIDTH};
@@ -63,7 +63,6 @@ impl Strategy for Visible {
         summary: "takes clusters by what is seen of them from around here, then a light of one by a walk down a tree",
         source: "this project; clusters with learned weights: Wang et al., ACM TOG 40(6), 2021",
         claim: Claim::Unbiased,
-        role: Role::Choosing,
     };
     type Sampler = Sampler;
 
