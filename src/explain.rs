@@ -15,7 +15,7 @@ use glam::Vec3;
 
 /// What became of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fate {
+pub(crate) enum Fate {
     /// It added light.
     Adds,
     /// No shadow ray was cast.
@@ -26,7 +26,7 @@ pub enum Fate {
 
 /// A pick and what became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Explained {
+pub(crate) struct Explained {
     /// Which light.
     pub light: LightId,
     /// What its contribution is multiplied with.
@@ -43,7 +43,7 @@ pub struct Explained {
 
 /// What a light adds at the receiver, and how often it is picked there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
+pub(crate) struct Share {
     /// Which light.
     pub light: LightId,
     /// Luminance in cd/m^2: exact, but of a triangle a mean over points.
@@ -53,7 +53,7 @@ pub struct Share {
 }
 
 /// A strategy at one receiver.
-pub struct Explanation {
+pub(crate) struct Explanation {
     /// The receiver.
     pub at: Receiver,
     /// The picks of each pass.
@@ -64,12 +64,12 @@ pub struct Explanation {
 
 impl Explanation {
     /// What all lights add, in cd/m^2.
-    pub fn exact(&self) -> f64 {
+    pub(crate) fn exact(&self) -> f64 {
         self.shares.iter().map(|share| share.exact).sum()
     }
 
     /// What the passes say that they add, on average.
-    pub fn mean(&self) -> f64 {
+    pub(crate) fn mean(&self) -> f64 {
         let added = self.passes.iter().flatten().filter(|pick| pick.fate == Fate::Adds);
         added.map(|pick| f64::from(pick.adds)).sum::<f64>() / self.passes.len().max(1) as f64
     }
@@ -83,7 +83,7 @@ const POINTS: u32 = 1024;
 /// # Errors
 /// A pixel outside the film, or that sees the sky or an emitter; a strategy that cannot serve the scene, or that picks a
 /// light which there is not.
-pub fn explain(stage: &Stage, strategy: &Configured, [x, y]: [u32; 2], passes: u32, seed: u64) -> Result<Explanation> {
+pub(crate) fn explain(stage: &Stage, strategy: &Configured, [x, y]: [u32; 2], passes: u32, seed: u64) -> Result<Explanation> {
     let at = receiver(stage, [x, y])?;
     let key = RunKey { seed, run: 0 };
     let sampler = strategy.build(BuildContext { stage, seed })?;

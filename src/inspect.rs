@@ -20,7 +20,7 @@ use std::f32::consts::PI;
 
 /// What is known of a scene without comparing anything.
 #[derive(Clone, Debug, Serialize)]
-pub struct Inspection {
+pub(crate) struct Inspection {
     /// The scene's name.
     pub name: String,
     /// Content hash.
@@ -57,7 +57,7 @@ pub struct Inspection {
 
 /// Some of the lights.
 #[derive(Clone, Debug, Serialize)]
-pub struct Part {
+pub(crate) struct Part {
     /// What they are.
     pub name: String,
     /// How many.
@@ -70,7 +70,7 @@ pub struct Part {
 
 /// Lengths of lists.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Listed {
+pub(crate) struct Listed {
     /// Mean.
     pub mean: f64,
     /// A twentieth is shorter.
@@ -83,7 +83,7 @@ pub struct Listed {
 
 /// What the pixels show.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Pixels {
+pub(crate) struct Pixels {
     /// Share that sees the sky.
     pub sky_share: f64,
     /// Share that sees an emitter.
@@ -100,7 +100,7 @@ pub struct Pixels {
 
 /// Bytes on the heap.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Memory {
+pub(crate) struct Memory {
     /// Of the light table, a light.
     pub table_bytes_per_light: f64,
     /// Of the hierarchy over influence volumes, a light.
@@ -116,7 +116,7 @@ const SAMPLES: usize = 2_048;
 const EVALUATIONS: usize = 60_000_000;
 
 /// Looks at a scene made ready.
-pub fn inspect(stage: &Stage) -> Inspection {
+pub(crate) fn inspect(stage: &Stage) -> Inspection {
     let scene = stage.scene();
     let (low, high) = scene.bounds();
     let every: Vec<LightId> = (0..scene.lights().len() as LightId).collect();

@@ -39,17 +39,17 @@ pub mod calls;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "measure")]
-pub mod explain;
+mod explain;
 #[cfg(feature = "gltf")]
 pub mod export;
 #[cfg(feature = "image")]
 pub mod image;
 #[cfg(feature = "measure")]
-pub mod inspect;
+mod inspect;
 #[cfg(feature = "measure")]
-pub mod measure;
+mod measure;
 #[cfg(feature = "peers")]
-pub mod peers;
+mod peers;
 pub mod prelude;
 #[cfg(feature = "measure")]
 pub mod record;
@@ -60,11 +60,11 @@ pub mod scene;
 pub mod shading;
 pub mod sources;
 #[cfg(feature = "measure")]
-pub mod stability;
+mod stability;
 pub mod strategies;
 pub mod strategy;
 #[cfg(feature = "study")]
-pub mod study;
+mod study;
 pub mod tree;
 #[cfg(feature = "measure")]
 pub mod verify;

@@ -9,7 +9,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number as `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DoubleDouble {
+pub(crate) struct DoubleDouble {
     /// The number, rounded to f64.
     pub high: f64,
     /// What is missing.
@@ -49,7 +49,7 @@ fn product(a: f64, b: f64) -> DoubleDouble {
 
 impl DoubleDouble {
     /// The square root; 0 of what is not positive.
-    pub fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::default();
         }
@@ -59,7 +59,7 @@ impl DoubleDouble {
     }
 
     /// The quotient.
-    pub fn over(self, other: Self) -> Self {
+    pub(crate) fn over(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self - other * first.into();
         let second = rest.high / other.high;
@@ -69,12 +69,12 @@ impl DoubleDouble {
     }
 
     /// Scalar product of two vectors.
-    pub fn dot(a: [Self; 3], b: [Self; 3]) -> Self {
+    pub(crate) fn dot(a: [Self; 3], b: [Self; 3]) -> Self {
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     }
 
     /// Cross product of two vectors.
-    pub fn cross(a: [Self; 3], b: [Self; 3]) -> [Self; 3] {
+    pub(crate) fn cross(a: [Self; 3], b: [Self; 3]) -> [Self; 3] {
         let at = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
         [at(1, 2), at(2, 0), at(0, 1)]
     }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A path that names no file, or a file that cannot be written; the error names `path`.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     write_together(&[(path.to_owned(), bytes)])
 }
 
@@ -22,7 +22,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// A path that names no file, or a file that cannot be written.
-pub fn write_together(files: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<()> {
+pub(crate) fn write_together(files: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<()> {
     let mut partials = Vec::new();
     let written = files.iter().try_for_each(|(path, bytes)| {
         let partial = partial(path)?;
@@ -50,7 +50,7 @@ pub fn write_together(files: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<()> {
 }
 
 /// Sees to it that the name of a file outlives a loss of power.
-pub fn sync_folder_of(path: &Path) {
+pub(crate) fn sync_folder_of(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // Not every system can: the file is then there or not, but never a part of it.
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
@@ -71,7 +71,7 @@ fn partial(path: &Path) -> Result<PathBuf> {
 ///
 /// # Errors
 /// A folder that cannot be read; a file of theirs that cannot be removed.
-pub fn remove_partials(folder: &Path) -> Result<()> {
+pub(crate) fn remove_partials(folder: &Path) -> Result<()> {
     for entry in fs::read_dir(folder).map_err(Error::io("read", folder))? {
         let path = entry.map_err(Error::io("read", folder))?.path();
         if path.file_name().and_then(|name| name.to_str()).is_some_and(is_partial) {

@@ -9,7 +9,7 @@ use super::statistics::{Moments, gamma_quantile, skewed, skewness, student_quant
 
 /// Where a figure lies, with some confidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub(crate) struct Bounds {
     /// The lower end.
     pub low: f64,
     /// The upper end; infinite where the tail is too heavy to say.
@@ -18,16 +18,16 @@ pub struct Bounds {
 
 impl Bounds {
     /// Nothing is known.
-    pub const NONE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    pub(crate) const NONE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
     /// Whether a value lies within.
-    pub fn contain(&self, value: f64) -> bool {
+    pub(crate) fn contain(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }
 }
 
 /// How many of its largest parts a run keeps.
-pub const LARGEST: usize = 4;
+pub(crate) const LARGEST: usize = 4;
 
 /// Events rarer than one in so many runs are left out of account: a mean stands for what that many would show.
 ///
@@ -59,7 +59,7 @@ const CROWDED: f64 = 0.2;
 /// Sources: Hanley and Lippman-Hand, JAMA 249(13), 1983, for the rule of three; Hill, Ann. Stat. 3(5), 1975, for the
 /// index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tail {
+pub(crate) struct Tail {
     /// The largest parts of all runs, largest first.
     largest: [f64; LARGEST],
     /// `ln(H / K) / K`.
@@ -70,10 +70,10 @@ pub struct Tail {
 
 impl Tail {
     /// No part stands out: the spread of the runs says all.
-    pub const NONE: Self = Self { largest: [0.0; LARGEST], reach: 0.0, heavy: false };
+    pub(crate) const NONE: Self = Self { largest: [0.0; LARGEST], reach: 0.0, heavy: false };
 
     /// From the values of runs and their largest parts, each largest first.
-    pub fn of(values: &[f64], largest: &[[f64; LARGEST]]) -> Self {
+    pub(crate) fn of(values: &[f64], largest: &[[f64; LARGEST]]) -> Self {
         let runs = largest.len().max(1) as f64;
         let mut pooled: Vec<f64> = largest.iter().flatten().copied().filter(|x| *x > 0.0).collect();
         pooled.sort_by(|a, b| b.total_cmp(a));
@@ -88,12 +88,12 @@ impl Tail {
     }
 
     /// The tail of a figure that changes by `slope` for each unit of this mean.
-    pub fn times(self, slope: f64) -> Self {
+    pub(crate) fn times(self, slope: f64) -> Self {
         Self { largest: self.largest.map(|x| x * slope.abs()), heavy: self.heavy && slope != 0.0, ..self }
     }
 
     /// The tail of a sum of two means over the same runs, whose parts may fall together.
-    pub fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             largest: std::array::from_fn(|j| self.largest[j] + other.largest[j]),
             reach: self.reach.max(other.reach),
@@ -102,7 +102,7 @@ impl Tail {
     }
 
     /// Whether it is too heavy to say how large the mean may be.
-    pub fn heavy(&self) -> bool {
+    pub(crate) fn heavy(&self) -> bool {
         self.heavy
     }
 
@@ -126,7 +126,7 @@ fn index(largest: &[f64]) -> f64 {
 /// function of means over the same runs, where the values are what each run says of it (their mean must be the figure).
 ///
 /// Student's t on the log scale, and above it what [`Tail`] says may be missing, as if independent.
-pub fn mean(values: &[f64], tail: &Tail, confidence: f64) -> Bounds {
+pub(crate) fn mean(values: &[f64], tail: &Tail, confidence: f64) -> Bounds {
     let moments = Moments::of(values.iter().copied());
     let centre = moments.mean;
     if moments.n < 2 || centre.is_nan() || centre <= 0.0 {
@@ -141,7 +141,7 @@ pub fn mean(values: &[f64], tail: &Tail, confidence: f64) -> Bounds {
 /// skewness of the values.
 ///
 /// Source: Hall, J. R. Stat. Soc. B 54(1), 1992.
-pub fn signed_mean(values: &[f64], confidence: f64) -> Bounds {
+pub(crate) fn signed_mean(values: &[f64], confidence: f64) -> Bounds {
     let moments = Moments::of(values.iter().copied());
     if moments.n < 2 {
         return Bounds::NONE;

@@ -1,7 +1,7 @@
 //! Which known names come near a misspelt one.
 
 /// The names in `known` that resemble `given`, nearest first; all of them (up to twelve) when none does.
-pub fn near<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+pub(crate) fn near<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let mut scored: Vec<(f64, &str)> =
         known.into_iter().map(|name| (strsim::jaro_winkler(given, name), name)).collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -3,7 +3,7 @@
 use super::interval::Bounds;
 
 /// A positive figure, and where it lies at any confidence.
-pub struct Figure<'a> {
+pub(crate) struct Figure<'a> {
     /// The estimate.
     pub estimate: f64,
     /// Its bounds at a confidence within (0, 1).
@@ -20,7 +20,7 @@ const LEAST: f64 = 1e-12;
 /// the greater.
 ///
 /// Source: Zou and Donner, Stat. Med. 27(10), 2008.
-pub fn told_apart(a: &Figure<'_>, b: &Figure<'_>) -> f64 {
+pub(crate) fn told_apart(a: &Figure<'_>, b: &Figure<'_>) -> f64 {
     let (less, more) = if a.estimate < b.estimate { (a, b) } else { (b, a) };
     let distance = (more.estimate / less.estimate).ln();
     let apart = |doubt: f64| {
@@ -46,7 +46,7 @@ pub fn told_apart(a: &Figure<'_>, b: &Figure<'_>) -> f64 {
 /// Which hypotheses are rejected so that the chance of one false rejection among all is at most `level`.
 ///
 /// Source: Holm, Scand. J. Stat. 6(2), 1979.
-pub fn holm(p_values: &[f64], level: f64) -> Vec<bool> {
+pub(crate) fn holm(p_values: &[f64], level: f64) -> Vec<bool> {
     let mut order: Vec<usize> = (0..p_values.len()).collect();
     order.sort_by(|&i, &j| p_values[i].total_cmp(&p_values[j]));
     let mut rejected = vec![false; p_values.len()];
@@ -60,25 +60,25 @@ pub fn holm(p_values: &[f64], level: f64) -> Vec<bool> {
 }
 
 /// The pairs of `n` figures, in the order in which [`Verdicts`] takes what is said of them.
-pub fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
+pub(crate) fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(move |i| (i + 1..n).map(move |j| (i, j)))
 }
 
 /// Which pairs of figures, sorted by their estimates, are told apart.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Verdicts {
+pub(crate) struct Verdicts {
     apart: Vec<Vec<bool>>,
 }
 
 impl Verdicts {
     /// Of these figures, least first: all pairs tested together at `level`.
-    pub fn of(sorted: &[Figure<'_>], level: f64) -> Self {
+    pub(crate) fn of(sorted: &[Figure<'_>], level: f64) -> Self {
         let p_values: Vec<f64> = pairs(sorted.len()).map(|(i, j)| told_apart(&sorted[i], &sorted[j])).collect();
         Self::new(sorted.len(), &holm(&p_values, level))
     }
 
     /// Of `n` figures, with a verdict for each of [`pairs`].
-    pub fn new(n: usize, told: &[bool]) -> Self {
+    pub(crate) fn new(n: usize, told: &[bool]) -> Self {
         let mut apart = vec![vec![false; n]; n];
         for ((i, j), &told) in pairs(n).zip(told) {
             (apart[i][j], apart[j][i]) = (told, told);
@@ -87,12 +87,12 @@ impl Verdicts {
     }
 
     /// Whether two are told apart.
-    pub fn apart(&self, i: usize, j: usize) -> bool {
+    pub(crate) fn apart(&self, i: usize, j: usize) -> bool {
         self.apart[i][j]
     }
 
     /// First and last rank that each may have: behind those told to be less, before those told to be more.
-    pub fn ranks(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn ranks(&self) -> Vec<(usize, usize)> {
         let n = self.apart.len();
         let told = |i: usize, others: std::ops::Range<usize>| others.filter(|&j| self.apart[i][j]).count();
         (0..n).map(|i| (1 + told(i, 0..i), n - told(i, i + 1..n))).collect()
@@ -101,7 +101,7 @@ impl Verdicts {
     /// Groups of figures, lettered from the least: two share a letter if and only if they are not told apart.
     ///
     /// Source: the insert-and-absorb algorithm of Piepho, J. Comput. Graph. Stat. 13(2), 2004.
-    pub fn letters(&self) -> Vec<String> {
+    pub(crate) fn letters(&self) -> Vec<String> {
         let n = self.apart.len();
         let mut groups = vec![vec![true; n]];
         for (i, j) in pairs(n).filter(|&(i, j)| self.apart[i][j]) {

@@ -7,24 +7,24 @@ use glam::{DVec3, Vec3};
 
 /// What squared errors are divided by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RelMse {
+pub(crate) struct RelMse {
     epsilon: Vec3,
 }
 
 impl RelMse {
     /// For this truth; its values are those that the error is taken over.
-    pub fn about(truth: &[Vec3]) -> Self {
+    pub(crate) fn about(truth: &[Vec3]) -> Self {
         let average = truth.iter().fold(DVec3::ZERO, |sum, x| sum + x.as_dvec3()) / truth.len().max(1) as f64;
         Self { epsilon: (average * average * 0.01).as_vec3() }
     }
 
     /// Epsilon per channel, in the square of the truth's unit.
-    pub fn epsilon(&self) -> Vec3 {
+    pub(crate) fn epsilon(&self) -> Vec3 {
         self.epsilon
     }
 
     /// `1 / (r^2 + epsilon)` per channel; 0 where that would be a division of nothing by nothing.
-    pub fn weight(&self, r: Vec3) -> DVec3 {
+    pub(crate) fn weight(&self, r: Vec3) -> DVec3 {
         let r = r.as_dvec3();
         let denominator = r * r + self.epsilon.as_dvec3();
         DVec3::select(denominator.cmpgt(DVec3::ZERO), denominator.recip(), DVec3::ZERO)
@@ -33,7 +33,7 @@ impl RelMse {
 
 /// Means of the errors of single pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Means {
+pub(crate) struct Means {
     /// Over all pixels.
     pub all: f64,
     /// Without the worst 0.1 % of them, one at least.
@@ -44,7 +44,7 @@ pub struct Means {
 
 impl Means {
     /// Of these errors; of none, all are 0.
-    pub fn of(errors: &[f64]) -> Self {
+    pub(crate) fn of(errors: &[f64]) -> Self {
         let n = errors.len();
         if n == 0 {
             return Self::default();

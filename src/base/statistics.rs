@@ -2,7 +2,7 @@
 
 /// Sample size, mean and variance of a list of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moments {
+pub(crate) struct Moments {
     /// How many numbers.
     pub n: usize,
     /// Their mean; 0 of none.
@@ -13,7 +13,7 @@ pub struct Moments {
 
 impl Moments {
     /// The moments of `values`, in two passes.
-    pub fn of(values: impl IntoIterator<Item = f64> + Clone) -> Self {
+    pub(crate) fn of(values: impl IntoIterator<Item = f64> + Clone) -> Self {
         let (mut n, mut sum) = (0usize, 0.0);
         for v in values.clone() {
             n += 1;
@@ -25,13 +25,13 @@ impl Moments {
     }
 
     /// Standard error of the mean; infinite for fewer than two numbers.
-    pub fn standard_error(&self) -> f64 {
+    pub(crate) fn standard_error(&self) -> f64 {
         if self.n < 2 { f64::INFINITY } else { (self.variance / self.n as f64).sqrt() }
     }
 
     /// Half the width of Student's interval for the mean at a confidence within (0, 1), `0.95`.
     #[cfg(feature = "measure")]
-    pub fn half_width(&self, confidence: f64) -> f64 {
+    pub(crate) fn half_width(&self, confidence: f64) -> f64 {
         if self.n < 2 {
             f64::INFINITY
         } else {
@@ -41,7 +41,7 @@ impl Moments {
 
     /// The bias that a two-sided test of the mean at `level` would find with 80 % power, in the values' unit.
     #[cfg(feature = "measure")]
-    pub fn detectable(&self, level: f64) -> f64 {
+    pub(crate) fn detectable(&self, level: f64) -> f64 {
         if self.n < 2 {
             return f64::INFINITY;
         }
@@ -50,7 +50,7 @@ impl Moments {
 }
 
 /// The skewness of a list of numbers; 0 of fewer than three or of equal ones.
-pub fn skewness(values: impl IntoIterator<Item = f64> + Clone) -> f64 {
+pub(crate) fn skewness(values: impl IntoIterator<Item = f64> + Clone) -> f64 {
     let Moments { n, mean, variance } = Moments::of(values.clone());
     let cubes: f64 = values.into_iter().map(|v| (v - mean).powi(3)).sum();
     if n < 3 || variance <= 0.0 { 0.0 } else { cubes / n as f64 / variance.powf(1.5) }
@@ -59,13 +59,13 @@ pub fn skewness(values: impl IntoIterator<Item = f64> + Clone) -> f64 {
 /// A t statistic of `n` numbers freed of their skewness, to first order: increasing in t.
 ///
 /// Source: Hall, J. R. Stat. Soc. B 54(1), 1992, for a mean divided by its measured error.
-pub fn unskewed(t: f64, skewness: f64, n: usize) -> f64 {
+pub(crate) fn unskewed(t: f64, skewness: f64, n: usize) -> f64 {
     let a = skewness / (n.max(1) as f64).sqrt();
     t + a / 3.0 * t * t + a * a / 27.0 * t * t * t + a / 6.0
 }
 
 /// The t statistic that [`unskewed`] turns into `t`.
-pub fn skewed(t: f64, skewness: f64, n: usize) -> f64 {
+pub(crate) fn skewed(t: f64, skewness: f64, n: usize) -> f64 {
     let a = skewness / (n.max(1) as f64).sqrt();
     // Below that the cube root loses more digits than the correction has.
     if a.abs() < 1e-6 { t } else { ((1.0 + a * (t - a / 6.0)).cbrt() - 1.0) * 3.0 / a }
@@ -73,7 +73,7 @@ pub fn skewed(t: f64, skewness: f64, n: usize) -> f64 {
 
 /// The value below which Student's t with `freedom` degrees of freedom lies with probability `p`.
 #[cfg(feature = "measure")]
-pub fn student_quantile(p: f64, freedom: usize) -> f64 {
+pub(crate) fn student_quantile(p: f64, freedom: usize) -> f64 {
     use statrs::distribution::{ContinuousCDF, StudentsT};
     // There the search below takes ever longer, in the end for ever; two terms about the normal law (Abramowitz and
     // Stegun, 26.7.5) are right to 1e-8.
@@ -87,32 +87,32 @@ pub fn student_quantile(p: f64, freedom: usize) -> f64 {
 
 /// The value below which a standard normal number lies with probability `p`.
 #[cfg(feature = "measure")]
-pub fn normal_quantile(p: f64) -> f64 {
+pub(crate) fn normal_quantile(p: f64) -> f64 {
     use statrs::distribution::{ContinuousCDF, Normal};
     Normal::standard().inverse_cdf(p)
 }
 
 /// The value below which a gamma law of this shape and scale 1 lies with probability `p`.
 #[cfg(feature = "measure")]
-pub fn gamma_quantile(p: f64, shape: f64) -> f64 {
+pub(crate) fn gamma_quantile(p: f64, shape: f64) -> f64 {
     use statrs::distribution::{ContinuousCDF, Gamma};
     Gamma::new(shape, 1.0).map_or(f64::INFINITY, |g| g.inverse_cdf(p))
 }
 
 /// Two-sided probability of a t statistic at least this far from 0.
 #[cfg(feature = "measure")]
-pub fn student_p(t: f64, freedom: usize) -> f64 {
+pub(crate) fn student_p(t: f64, freedom: usize) -> f64 {
     use statrs::distribution::{ContinuousCDF, StudentsT};
     StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(1.0, |d| 2.0 * d.sf(t.abs()))
 }
 
 /// The level for each of `hypotheses` tests so that all together keep `level` (Sidak 1967).
-pub fn sidak(level: f64, hypotheses: usize) -> f64 {
+pub(crate) fn sidak(level: f64, hypotheses: usize) -> f64 {
     1.0 - (1.0 - level).powf(1.0 / hypotheses.max(1) as f64)
 }
 
 /// The value under which the share `q` of the sorted `values` lies, by linear interpolation; NaN of none.
-pub fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let at = q.clamp(0.0, 1.0) * last as f64;
     let low = at.floor() as usize;

@@ -23,7 +23,7 @@ const LEFT_OUT: [u8; 3] = [128; 3];
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scale {
+pub(crate) enum Scale {
     /// From 0 to 1.
     Unit,
     /// By the logarithm, from the first value to the second, both above 0; beyond them the ends.
@@ -32,7 +32,7 @@ pub enum Scale {
 
 /// A value for each pixel of a picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Map<'a> {
+pub(crate) struct Map<'a> {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -61,7 +61,7 @@ impl Map<'_> {
     ///
     /// # Errors
     /// An extension that is neither `.png` nor `.exr`; a map without pixels; a file that cannot be written.
-    pub fn write(&self, path: &Path) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
         let pixels = self.values.iter().zip(self.counted);
         let bytes = match Format::of(path)? {
             Format::Png => {
@@ -80,7 +80,7 @@ impl Map<'_> {
 }
 
 /// The colour at `t`, 0 to 1, as 8-bit sRGB.
-pub fn magma(t: f64) -> [u8; 3] {
+pub(crate) fn magma(t: f64) -> [u8; 3] {
     let place = t.clamp(0.0, 1.0) * (MAGMA.len() - 1) as f64;
     let below = (place as usize).min(MAGMA.len() - 2);
     let share = place - below as f64;

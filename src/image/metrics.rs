@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 /// A pixel is left out where the mask says so, or where a component of either picture is NaN or infinite. Left-out
 /// pixels are black in both, so that they add nothing to their neighbours' FLIP either.
 #[derive(Clone, Debug)]
-pub struct Pair {
+pub(crate) struct Pair {
     reference: Vec<Vec3>,
     test: Vec<Vec3>,
     width: usize,
@@ -23,7 +23,7 @@ pub struct Pair {
 
 /// The errors of a test picture, over the pixels that count and their channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
+pub(crate) struct Errors {
     /// Mean luminance of reference and test.
     pub mean: [f64; 2],
     /// Mean squared error, in the square of the pictures' unit.
@@ -39,7 +39,7 @@ impl Pair {
     ///
     /// # Errors
     /// Pictures of different sizes; a mask and values that are not finite which leave no pixel.
-    pub fn new(reference: &Picture, test: &Picture, mask: Option<&Picture>) -> Result<Self> {
+    pub(crate) fn new(reference: &Picture, test: &Picture, mask: Option<&Picture>) -> Result<Self> {
         let size = |picture: &Picture| (picture.width, picture.height);
         for (name, other) in [("test", Some(test)), ("mask", mask)] {
             if let Some(other) = other.filter(|other| size(other) != size(reference)) {
@@ -77,27 +77,27 @@ impl Pair {
     }
 
     /// Whether each pixel counts, row by row from the top.
-    pub fn counted(&self) -> &[bool] {
+    pub(crate) fn counted(&self) -> &[bool] {
         &self.counted
     }
 
     /// How many pixels count.
-    pub fn pixels(&self) -> usize {
+    pub(crate) fn pixels(&self) -> usize {
         self.counted.len() - self.masked - self.not_finite
     }
 
     /// How many the mask leaves out.
-    pub fn masked(&self) -> usize {
+    pub(crate) fn masked(&self) -> usize {
         self.masked
     }
 
     /// How many others are left out for a component that is not finite.
-    pub fn not_finite(&self) -> usize {
+    pub(crate) fn not_finite(&self) -> usize {
         self.not_finite
     }
 
     /// The errors of the test picture.
-    pub fn errors(&self) -> Errors {
+    pub(crate) fn errors(&self) -> Errors {
         let mean = |picture: &[Vec3]| {
             self.those_counted(picture).map(|rgb| f64::from(luminance(rgb))).sum::<f64>() / self.pixels() as f64
         };
@@ -112,34 +112,34 @@ impl Pair {
     }
 
     /// Squared error of every pixel, the mean of its channels; 0 where a pixel is left out.
-    pub fn squared_errors(&self) -> Vec<f64> {
+    pub(crate) fn squared_errors(&self) -> Vec<f64> {
         self.weighted_squares(|_| DVec3::ONE)
     }
 
     /// Relative squared error of every pixel, the mean of its channels; 0 where a pixel is left out.
-    pub fn relative_errors(&self) -> Vec<f64> {
+    pub(crate) fn relative_errors(&self) -> Vec<f64> {
         let relative = self.relative();
         self.weighted_squares(|r| relative.weight(r))
     }
 
     /// FLIP of every pixel at this exposure (display units per unit of the pictures), 0 to 1.
-    pub fn flip(&self, exposure: f32, pixels_per_degree: f64) -> Vec<f64> {
+    pub(crate) fn flip(&self, exposure: f32, pixels_per_degree: f64) -> Vec<f64> {
         let shown = |picture: &[Vec3]| picture.iter().map(|&rgb| rgb * exposure).collect::<Vec<_>>();
         widened(flip::ldr(&shown(&self.reference), &shown(&self.test), self.width, pixels_per_degree))
     }
 
     /// The exposures that show the reference's counted pixels.
-    pub fn exposures(&self) -> Exposures {
+    pub(crate) fn exposures(&self) -> Exposures {
         Exposures::of(self.those_counted(&self.reference))
     }
 
     /// HDR-FLIP of every pixel, 0 to 1.
-    pub fn hdr_flip(&self, exposures: Exposures, pixels_per_degree: f64) -> Vec<f64> {
+    pub(crate) fn hdr_flip(&self, exposures: Exposures, pixels_per_degree: f64) -> Vec<f64> {
         widened(flip::hdr(&self.reference, &self.test, self.width, exposures, pixels_per_degree))
     }
 
     /// What a map comes to over the pixels that count.
-    pub fn pooled(&self, map: &[f64]) -> Pooled {
+    pub(crate) fn pooled(&self, map: &[f64]) -> Pooled {
         Pooled::of(&self.those_counted(map).collect::<Vec<_>>())
     }
 

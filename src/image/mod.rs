@@ -12,14 +12,14 @@
 //! | and to an eye that flips between them? | [`flip`] |
 //! | how are the errors of all pixels shown? | [`map`] |
 
-pub mod exr;
+pub(crate) mod exr;
 mod file;
-pub mod flip;
+pub(crate) mod flip;
 mod format;
-pub mod map;
-pub mod metrics;
+pub(crate) mod map;
+pub(crate) mod metrics;
 mod picture;
-pub mod png;
+pub(crate) mod png;
 
 pub use file::{read, write};
 pub use format::Format;

@@ -20,7 +20,7 @@ const MAGENTA: [u8; 3] = [255, 0, 255];
 ///
 /// # Errors
 /// A picture without pixels, or with another number of them than its sides say.
-pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
+pub(crate) fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
     picture.check()?;
     let texels: Vec<[u8; 3]> = picture.pixels.iter().map(|pixel| texel(*pixel, exposure)).collect();
     encode_texels(picture.width, picture.height, &texels)
@@ -30,7 +30,7 @@ pub fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// A picture without pixels.
-pub fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<u8>> {
+pub(crate) fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)
         .write_image(texels.as_flattened(), width, height, ExtendedColorType::Rgb8)
@@ -44,7 +44,7 @@ pub fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Result<Vec<
 /// # Errors
 /// A file that cannot be opened is [`Error::Io`]; one that is damaged or larger than [`MOST_PIXELS`] is
 /// [`Error::Input`].
-pub fn read(path: &Path) -> Result<Picture> {
+pub(crate) fn read(path: &Path) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
     let mut limits = Limits::default();
     // 16 bits in four channels.

@@ -4,7 +4,7 @@ use cpu_time::{ProcessTime, ThreadTime};
 use std::time::Instant;
 
 /// Reads clocks. Tests put another one in its place; everything else reads [`Cpu`].
-pub trait Clock: Sync {
+pub(crate) trait Clock: Sync {
     /// Seconds that this thread has had a processor.
     fn thread_s(&self) -> f64;
     /// Seconds that all threads of the process have had one, those included that have ended.
@@ -14,11 +14,11 @@ pub trait Clock: Sync {
 }
 
 /// The clocks of the machine, from when this was made.
-pub struct Cpu(Instant);
+pub(crate) struct Cpu(Instant);
 
 impl Cpu {
     /// Begins to count the wall's seconds.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Instant::now())
     }
 }
@@ -45,7 +45,7 @@ impl Clock for Cpu {
 
 /// Seconds on a thread's CPU clock and on the wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spent {
+pub(crate) struct Spent {
     /// CPU seconds of the thread.
     pub cpu: f64,
     /// Wall seconds.

@@ -20,10 +20,10 @@ use crate::record::{Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Sum
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 
-pub use super::options::ComparisonOptions;
+pub(crate) use super::options::ComparisonOptions;
 
 /// What a comparison found on one scene.
-pub struct Compared<'a> {
+pub(crate) struct Compared<'a> {
     /// The scene, with a summary of each strategy.
     pub scene: SceneRecord,
     /// All rows.
@@ -40,7 +40,7 @@ pub struct Compared<'a> {
 /// # Errors
 /// A cache, rows or images that cannot be read or written; a reference whose halves are not independent; the user's
 /// wish to stop. A strategy that fails is an error in its own summary alone.
-pub fn compare<'a>(
+pub(crate) fn compare<'a>(
     stage: &'a Stage,
     file: &str,
     options: &ComparisonOptions<'_>,

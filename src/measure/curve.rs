@@ -8,7 +8,7 @@ use super::figure::{self, Figure};
 use crate::record::{Read, Row};
 
 /// The runs of each budget, smallest first: the same runs at each.
-pub struct Curve<'a> {
+pub(crate) struct Curve<'a> {
     budgets: Vec<Vec<&'a Row>>,
 }
 
@@ -23,17 +23,17 @@ struct Point {
 
 impl<'a> Curve<'a> {
     /// The curve of a strategy with these budgets.
-    pub fn of(runs: &'a Runs, ladder: &[u32]) -> Self {
+    pub(crate) fn of(runs: &'a Runs, ladder: &[u32]) -> Self {
         Self { budgets: ladder.iter().map(|&passes| runs.at(passes)).filter(|rows| !rows.is_empty()).collect() }
     }
 
     /// Whether anything was measured.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.budgets.is_empty()
     }
 
     /// CPU seconds, set-up included, to a relMSE of `error`, down to the squared bias that counts.
-    pub fn seconds_to(&self, error: f64, bias2: Figure) -> (Read, Figure) {
+    pub(crate) fn seconds_to(&self, error: f64, bias2: Figure) -> (Read, Figure) {
         self.read(bias2, move |points, bias2| {
             let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
             match points.iter().position(|point| point.error <= error) {
@@ -50,7 +50,7 @@ impl<'a> Curve<'a> {
     }
 
     /// relMSE after so many CPU seconds, set-up included, down to the squared bias that counts.
-    pub fn error_at(&self, seconds: f64, bias2: Figure) -> (Read, Figure) {
+    pub(crate) fn error_at(&self, seconds: f64, bias2: Figure) -> (Read, Figure) {
         self.read(bias2, move |points, bias2| {
             let Some(last) = points.last() else { return (Read::Unknown, f64::NAN) };
             match points.iter().position(|point| point.seconds >= seconds) {

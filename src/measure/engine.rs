@@ -29,7 +29,7 @@ use std::sync::mpsc;
 use crate::base::random::RunKey;
 
 /// Does units of work on workers with a clock each.
-pub struct Engine<'a> {
+pub(crate) struct Engine<'a> {
     /// The clock.
     pub clock: &'a dyn Clock,
     /// Units side by side.
@@ -40,11 +40,11 @@ pub struct Engine<'a> {
 
 /// What a unit is timed with.
 #[derive(Clone, Copy)]
-pub struct Meter<'a>(&'a dyn Clock);
+pub(crate) struct Meter<'a>(&'a dyn Clock);
 
 /// CPU seconds of all units of a call together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Account {
+pub(crate) struct Account {
     /// Of the threads that did the units and of the one that took in what they gave.
     pub threads_s: f64,
     /// Of the whole process meanwhile.
@@ -53,14 +53,14 @@ pub struct Account {
 
 impl Account {
     /// CPU seconds that nobody was charged for, as a share of what the process spent.
-    pub fn stray_share(&self) -> f64 {
+    pub(crate) fn stray_share(&self) -> f64 {
         if self.process_s > 0.0 { ((self.process_s - self.threads_s) / self.process_s).max(0.0) } else { 0.0 }
     }
 }
 
 impl Meter<'_> {
     /// Does `work` and says what it took on this thread.
-    pub fn time<T>(&self, work: impl FnOnce() -> T) -> (T, Spent) {
+    pub(crate) fn time<T>(&self, work: impl FnOnce() -> T) -> (T, Spent) {
         let (cpu, wall) = (self.0.thread_s(), self.0.wall_s());
         let result = work();
         let spent = Spent { cpu: self.0.thread_s() - cpu, wall: self.0.wall_s() - wall };
@@ -68,7 +68,7 @@ impl Meter<'_> {
     }
 
     /// Does `work` and says what this thread took and what the process did: the same, if nothing else is running.
-    pub fn audit<T>(&self, work: impl FnOnce() -> T) -> (T, Account) {
+    pub(crate) fn audit<T>(&self, work: impl FnOnce() -> T) -> (T, Account) {
         let (thread, process) = (self.0.thread_s(), self.0.process_s());
         let result = work();
         let account = Account { threads_s: self.0.thread_s() - thread, process_s: self.0.process_s() - process };
@@ -81,7 +81,7 @@ impl Engine<'_> {
     ///
     /// # Errors
     /// No thread to run on.
-    pub fn alone<T: Send>(&self, work: impl FnOnce(Meter<'_>) -> T + Send) -> Result<T> {
+    pub(crate) fn alone<T: Send>(&self, work: impl FnOnce(Meter<'_>) -> T + Send) -> Result<T> {
         let pool = pool()?;
         Ok(pool.install(|| work(Meter(self.clock))))
     }
@@ -90,7 +90,7 @@ impl Engine<'_> {
     ///
     /// # Errors
     /// The first error, of a unit or of `sink`, or the user's wish to stop: all stops there. No thread to run on.
-    pub fn run<U: Sync, T: Send>(
+    pub(crate) fn run<U: Sync, T: Send>(
         &self,
         what: &str,
         units: &[U],
@@ -149,7 +149,7 @@ impl Engine<'_> {
 
 /// One budget of one run of one strategy, from nothing.
 #[derive(Clone, Copy)]
-pub struct Block<'a> {
+pub(crate) struct Block<'a> {
     /// The scene made ready.
     pub stage: &'a Stage,
     /// The frame.
@@ -164,7 +164,7 @@ pub struct Block<'a> {
 
 /// What a block took and gave.
 #[derive(Clone, Debug)]
-pub struct Done {
+pub(crate) struct Done {
     /// Building the sampler.
     pub setup: Spent,
     /// Arriving at all receivers, and all passes.
@@ -180,7 +180,7 @@ impl Block<'_> {
     ///
     /// # Errors
     /// A strategy that cannot serve the scene.
-    pub fn run(&self, meter: Meter<'_>) -> Result<Done> {
+    pub(crate) fn run(&self, meter: Meter<'_>) -> Result<Done> {
         let Self { stage, receivers, strategy, key, passes } = *self;
         let context = BuildContext { stage, seed: build_seed(key) };
         let (sampler, setup) = meter.time(|| strategy.build(context));
@@ -193,7 +193,7 @@ impl Block<'_> {
 
 /// Does all passes of a sampler that is there already in one block; the image of the plan's receivers, and what arriving
 /// and sampling took.
-pub fn sample(plan: &Plan<'_>, passes: u32, meter: Meter<'_>) -> (Vec<Vec3>, Spent) {
+pub(crate) fn sample(plan: &Plan<'_>, passes: u32, meter: Meter<'_>) -> (Vec<Vec3>, Spent) {
     let (film, spent) = meter.time(|| {
         let mut film = Film::new(plan.receivers.len());
         plan.run(passes, &mut film);
@@ -204,7 +204,7 @@ pub fn sample(plan: &Plan<'_>, passes: u32, meter: Meter<'_>) -> (Vec<Vec3>, Spe
 
 impl Done {
     /// What it took, in a row without errors yet.
-    pub fn row(&self, scene: &str, strategy: &str, run: u32, passes: u32) -> Row {
+    pub(crate) fn row(&self, scene: &str, strategy: &str, run: u32, passes: u32) -> Row {
         Row {
             setup_cpu_s: self.setup.cpu,
             cpu_s: self.sampling.cpu,
@@ -219,13 +219,13 @@ impl Done {
 ///
 /// # Errors
 /// A strategy that cannot serve the scene; no thread to run on.
-pub fn part_s(block: Block<'_>, times: u64, part: fn(&Done) -> f64) -> Result<f64> {
+pub(crate) fn part_s(block: Block<'_>, times: u64, part: fn(&Done) -> f64) -> Result<f64> {
     let all = |meter: Meter<'_>| (0..times).map(|_| block.run(meter).map(|done| part(&done))).sum();
     Engine { clock: &Cpu::new(), workers: 1, seed: 0 }.alone(all)?
 }
 
 /// The seed that a run's sampler is built with.
-pub fn build_seed(key: RunKey) -> u64 {
+pub(crate) fn build_seed(key: RunKey) -> u64 {
     key.stream(u32::MAX, 0).bits()
 }
 

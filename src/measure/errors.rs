@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 /// The exact radiance of the measured receivers: two independent halves, equal where the sum is free of noise.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Truth {
+pub(crate) struct Truth {
     halves: [Vec<Vec3>; 2],
     mean: Vec<Vec3>,
     relative: RelMse,
@@ -19,7 +19,7 @@ pub struct Truth {
 
 /// The errors of one image, over receivers and channels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Errors {
+pub(crate) struct Errors {
     /// Mean squared error, in (cd/m^2)^2.
     pub mse: f64,
     /// Mean of squared error over (squared truth + epsilon).
@@ -39,7 +39,7 @@ pub struct Errors {
 
 impl Errors {
     /// The row with these errors in it.
-    pub fn written_to(self, row: Row) -> Row {
+    pub(crate) fn written_to(self, row: Row) -> Row {
         Row {
             mse: self.mse,
             rel_mse: self.rel_mse,
@@ -55,7 +55,7 @@ impl Errors {
 
 impl Truth {
     /// From two independent halves.
-    pub fn new(halves: [Vec<Vec3>; 2]) -> Self {
+    pub(crate) fn new(halves: [Vec<Vec3>; 2]) -> Self {
         let mean: Vec<Vec3> =
             halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
         let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
@@ -64,40 +64,40 @@ impl Truth {
     }
 
     /// The truth at about `count` of its receivers: those of [`Target::thinned`](super::target::Target::thinned).
-    pub fn thinned(&self, count: usize) -> Self {
+    pub(crate) fn thinned(&self, count: usize) -> Self {
         let few = |half: &Vec<Vec3>| places(half.len(), count).map(|i| half[i]).collect();
         Self::new([few(&self.halves[0]), few(&self.halves[1])])
     }
 
     /// The truth at some of its receivers, with the epsilon of all of them.
-    pub fn only(&self, places: &[usize]) -> Self {
+    pub(crate) fn only(&self, places: &[usize]) -> Self {
         let some = |half: &Vec<Vec3>| places.iter().map(|&i| half[i]).collect();
         Self { relative: self.relative, ..Self::new([some(&self.halves[0]), some(&self.halves[1])]) }
     }
 
     /// The best estimate, in cd/m^2.
-    pub fn mean(&self) -> &[Vec3] {
+    pub(crate) fn mean(&self) -> &[Vec3] {
         &self.mean
     }
 
     /// How squared errors are weighed.
-    pub fn relative(&self) -> RelMse {
+    pub(crate) fn relative(&self) -> RelMse {
         self.relative
     }
 
     /// The epsilon of relMSE, per channel.
-    pub fn epsilon(&self) -> Vec3 {
+    pub(crate) fn epsilon(&self) -> Vec3 {
         self.relative.epsilon()
     }
 
     /// Variance of the luminance of [`mean`](Self::mean) at a receiver, from the two halves; 0 for an exact sum.
-    pub fn variance(&self, i: usize) -> f64 {
+    pub(crate) fn variance(&self, i: usize) -> f64 {
         // The variance of the mean of two is a quarter of the square of their difference, on average.
         f64::from(luminance(self.halves[0][i]) - luminance(self.halves[1][i])).powi(2) / 4.0
     }
 
     /// relMSE of the mean of the halves about what it estimates; 0 for an exact sum.
-    pub fn own_rel_mse(&self) -> f64 {
+    pub(crate) fn own_rel_mse(&self) -> f64 {
         // The variance of the mean of two is a quarter of the square of their difference, on average.
         self.mean_over(|i| {
             let difference = (self.halves[0][i] - self.halves[1][i]).as_dvec3();
@@ -106,7 +106,7 @@ impl Truth {
     }
 
     /// Standard error of the mean luminance as a share of it; 0 for an exact sum.
-    pub fn own_energy_error(&self) -> f64 {
+    pub(crate) fn own_energy_error(&self) -> f64 {
         // Receivers are sampled independently.
         let variance: f64 = (0..self.mean.len()).map(|i| self.variance(i)).sum();
         let total: f64 = self.mean.iter().map(|&x| f64::from(luminance(x))).sum();
@@ -114,29 +114,29 @@ impl Truth {
     }
 
     /// What the squared error of a receiver is multiplied by, per channel: see [`RelMse::weight`].
-    pub fn weight(&self, i: usize) -> DVec3 {
+    pub(crate) fn weight(&self, i: usize) -> DVec3 {
         self.relative.weight(self.mean[i])
     }
 
     /// Mean over receivers and channels.
-    pub fn mean_over(&self, value: impl Fn(usize) -> DVec3) -> f64 {
+    pub(crate) fn mean_over(&self, value: impl Fn(usize) -> DVec3) -> f64 {
         let n = self.mean.len();
         if n == 0 { 0.0 } else { (0..n).map(|i| value(i).element_sum()).sum::<f64>() / (3 * n) as f64 }
     }
 
     /// `(x - first half)(x - second half)`: its mean over runs is the squared error without the truth's own noise.
-    pub fn product(&self, i: usize, x: DVec3) -> DVec3 {
+    pub(crate) fn product(&self, i: usize, x: DVec3) -> DVec3 {
         (x - self.halves[0][i].as_dvec3()) * (x - self.halves[1][i].as_dvec3())
     }
 
     /// relMSE over some receivers only, those at `places`, of the values there; NaN of none.
-    pub fn rel_mse_at(&self, places: &[usize], values: impl Iterator<Item = Vec3>) -> f64 {
+    pub(crate) fn rel_mse_at(&self, places: &[usize], values: impl Iterator<Item = Vec3>) -> f64 {
         let error = |(&i, x): (&usize, Vec3)| (self.product(i, x.as_dvec3()) * self.weight(i)).element_sum() / 3.0;
         places.iter().zip(values).map(error).sum::<f64>() / places.len() as f64
     }
 
     /// All errors of an image.
-    pub fn errors(&self, image: &[Vec3]) -> Errors {
+    pub(crate) fn errors(&self, image: &[Vec3]) -> Errors {
         let n = self.mean.len();
         if n == 0 {
             return Errors { energy_ratio: 1.0, ..Errors::default() };

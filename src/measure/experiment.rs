@@ -14,7 +14,7 @@ use crate::strategy::Configured;
 use glam::Vec3;
 
 /// What is run.
-pub struct Experiment<'a> {
+pub(crate) struct Experiment<'a> {
     /// Who times it.
     pub engine: &'a Engine<'a>,
     /// The frame, and where errors are taken.
@@ -32,10 +32,10 @@ pub struct Experiment<'a> {
 }
 
 /// What a unit gave: a row, and the image at the measured receivers if its budget is the largest.
-pub type Found = (Row, Option<Vec<Vec3>>);
+pub(crate) type Found = (Row, Option<Vec<Vec3>>);
 
 /// Where rows and images are kept, so that an interrupted experiment goes on.
-pub trait Keep {
+pub(crate) trait Keep {
     /// What is kept of a unit. What is there in part only is thrown away: the unit will be done again.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ pub trait Keep {
 }
 
 /// Keeps nothing.
-pub struct Nowhere;
+pub(crate) struct Nowhere;
 
 impl Keep for Nowhere {
     fn take(&mut self, _: &str, _: u32, _: u32, _: bool) -> Result<Option<Found>> {
@@ -63,7 +63,7 @@ impl Keep for Nowhere {
 
 /// What the runs of one strategy gave.
 #[derive(Clone, Debug, Default)]
-pub struct Runs {
+pub(crate) struct Runs {
     /// Its rows, by budget and run.
     pub rows: Vec<Row>,
     /// Its images at the largest budget, in the order of runs.
@@ -72,13 +72,13 @@ pub struct Runs {
 
 impl Runs {
     /// The rows of a budget, in the order of runs.
-    pub fn at(&self, passes: u32) -> Vec<&Row> {
+    pub(crate) fn at(&self, passes: u32) -> Vec<&Row> {
         self.rows.iter().filter(|row| row.passes == passes && row.error.is_none()).collect()
     }
 }
 
 /// Names the random numbers of a run at a budget: budgets share none, so that what they say is independent.
-pub fn numbers(seed: u64, run: u32, passes: u32) -> RunKey {
+pub(crate) fn numbers(seed: u64, run: u32, passes: u32) -> RunKey {
     RunKey { seed: hash(&[seed, u64::from(passes)]), run }
 }
 
@@ -94,7 +94,7 @@ impl Experiment<'_> {
     ///
     /// # Errors
     /// An error of `kept`; the user's wish to stop; no thread to run on. A strategy that fails has rows that say so.
-    pub fn run(&self, kept: &mut dyn Keep, watch: &dyn Observer) -> Result<(Vec<Runs>, Account)> {
+    pub(crate) fn run(&self, kept: &mut dyn Keep, watch: &dyn Observer) -> Result<(Vec<Runs>, Account)> {
         let mut found: Vec<Vec<Found>> = self.strategies.iter().map(|_| Vec::new()).collect();
         let mut units = Vec::new();
         for (strategy, ladder) in self.ladders.iter().enumerate() {

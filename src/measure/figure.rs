@@ -12,10 +12,10 @@ use crate::base::statistics::Moments;
 use crate::record::{Interval, Row};
 
 /// Confidence of every printed interval.
-pub const CONFIDENCE: f64 = 0.95;
+pub(crate) const CONFIDENCE: f64 = 0.95;
 
 /// An estimate, and where it lies at any confidence.
-pub struct Figure {
+pub(crate) struct Figure {
     /// The estimate.
     pub estimate: f64,
     bounds: Box<dyn Fn(f64) -> Bounds + Send + Sync>,
@@ -23,40 +23,40 @@ pub struct Figure {
 
 impl Figure {
     /// Known without doubt.
-    pub fn certain(value: f64) -> Self {
+    pub(crate) fn certain(value: f64) -> Self {
         Self { estimate: value, bounds: Box::new(move |_| Bounds { low: value, high: value }) }
     }
 
     /// The mean of one positive value a run, such as seconds.
-    pub fn mean(values: Vec<f64>) -> Self {
+    pub(crate) fn mean(values: Vec<f64>) -> Self {
         Self::error(values, Tail::NONE)
     }
 
     /// The mean of one positive value a run, with what pixels may add to it that no run has shown.
-    pub fn error(values: Vec<f64>, tail: Tail) -> Self {
+    pub(crate) fn error(values: Vec<f64>, tail: Tail) -> Self {
         let estimate = Moments::of(values.iter().copied()).mean;
         Self { estimate, bounds: Box::new(move |confidence| interval::mean(&values, &tail, confidence)) }
     }
 
     /// The mean of one value of either sign a run.
-    pub fn signed_mean(values: Vec<f64>) -> Self {
+    pub(crate) fn signed_mean(values: Vec<f64>) -> Self {
         let estimate = Moments::of(values.iter().copied()).mean;
         Self { estimate, bounds: Box::new(move |confidence| interval::signed_mean(&values, confidence)) }
     }
 
     /// A positive figure of `runs` runs that is no mean: `of(None)` from all of them, `of(Some(run))` without one.
     /// `tail` is that of the errors that it follows, in its own unit.
-    pub fn jackknife(runs: usize, tail: Tail, of: impl Fn(Option<usize>) -> f64) -> Self {
+    pub(crate) fn jackknife(runs: usize, tail: Tail, of: impl Fn(Option<usize>) -> f64) -> Self {
         Self { estimate: of(None), ..Self::error(pseudo_values(runs, of), tail) }
     }
 
     /// The same for a figure of either sign.
-    pub fn signed_jackknife(runs: usize, of: impl Fn(Option<usize>) -> f64) -> Self {
+    pub(crate) fn signed_jackknife(runs: usize, of: impl Fn(Option<usize>) -> f64) -> Self {
         Self { estimate: of(None), ..Self::signed_mean(pseudo_values(runs, of)) }
     }
 
     /// A positive figure made of independent ones; it rises or falls with each of them.
-    pub fn of(parts: Vec<Self>, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Self {
+    pub(crate) fn of(parts: Vec<Self>, function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Self {
         let centre: Vec<f64> = parts.iter().map(|part| part.estimate).collect();
         let estimate = function(&centre);
         let bounds = move |confidence: f64| {
@@ -82,7 +82,7 @@ impl Figure {
     }
 
     /// The same figure where it cannot be below 0.
-    pub fn above_zero(self) -> Self {
+    pub(crate) fn above_zero(self) -> Self {
         let bounds = move |confidence: f64| {
             let Bounds { low, high } = (self.bounds)(confidence);
             Bounds { low: low.max(0.0), high: high.max(0.0) }
@@ -91,18 +91,18 @@ impl Figure {
     }
 
     /// This figure over another, both positive; none where that has no meaning.
-    pub fn over(self, other: Self) -> Option<Self> {
+    pub(crate) fn over(self, other: Self) -> Option<Self> {
         let ratio = Self::of(vec![self, other], |parts| parts[0] / parts[1]);
         (ratio.estimate.is_finite() && ratio.estimate > 0.0).then_some(ratio)
     }
 
     /// Where it lies at a confidence within (0, 1).
-    pub fn bounds(&self, confidence: f64) -> Bounds {
+    pub(crate) fn bounds(&self, confidence: f64) -> Bounds {
         (self.bounds)(confidence)
     }
 
     /// With its interval.
-    pub fn interval(&self) -> Interval {
+    pub(crate) fn interval(&self) -> Interval {
         let Bounds { low, high } = self.bounds(CONFIDENCE);
         Interval { mean: self.estimate, low, high }
     }
@@ -123,17 +123,17 @@ fn pseudo_values(runs: usize, of: impl Fn(Option<usize>) -> f64) -> Vec<f64> {
 }
 
 /// The mean relMSE of these runs.
-pub fn error(rows: &[&Row]) -> Figure {
+pub(crate) fn error(rows: &[&Row]) -> Figure {
     Figure::error(rows.iter().map(|row| row.rel_mse).collect(), tail(rows))
 }
 
 /// The mean of a positive value of these runs.
-pub fn mean(rows: &[&Row], value: fn(&Row) -> f64) -> Figure {
+pub(crate) fn mean(rows: &[&Row], value: fn(&Row) -> f64) -> Figure {
     Figure::mean(rows.iter().map(|row| value(row)).collect())
 }
 
 /// The tail of the mean relMSE of these runs.
-pub fn tail(rows: &[&Row]) -> Tail {
+pub(crate) fn tail(rows: &[&Row]) -> Tail {
     let values: Vec<f64> = rows.iter().map(|row| row.rel_mse).collect();
     let largest: Vec<_> = rows.iter().map(|row| row.largest).collect();
     Tail::of(&values, &largest)

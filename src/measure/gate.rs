@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 const LEVEL: f64 = 1e-4;
 
 /// Lets right strategies pass.
-pub struct Gate<'a> {
+pub(crate) struct Gate<'a> {
     stage: &'a Stage,
     verifier: Verifier<'a>,
     /// What somebody types to verify the scene.
@@ -28,20 +28,20 @@ pub struct Gate<'a> {
 }
 
 /// How hard the gate looks at so many strategies.
-pub fn options(strategies: usize, seed: u64) -> VerifyOptions {
+pub(crate) fn options(strategies: usize, seed: u64) -> VerifyOptions {
     // A check fails only if it fails twice.
     let level = sidak(LEVEL, strategies * BY_CHANCE.len()).sqrt();
     VerifyOptions { receivers: 8, draws: 2_000, batches: 32, points: 16, seed, level, allocations: None }
 }
 
 /// The program's arithmetic on a stage against an independent one.
-pub fn arithmetic(stage: &Stage, seed: u64) -> Vec<Check> {
+pub(crate) fn arithmetic(stage: &Stage, seed: u64) -> Vec<Check> {
     independent(stage, &Own(stage), seed, LEVEL)
 }
 
 impl<'a> Gate<'a> {
     /// A gate for so many strategies on a stage; `typed` is what somebody types to verify the scene.
-    pub fn new(stage: &'a Stage, typed: &str, strategies: usize, seed: u64) -> Self {
+    pub(crate) fn new(stage: &'a Stage, typed: &str, strategies: usize, seed: u64) -> Self {
         let verifier = Verifier::new(stage, options(strategies, seed));
         Self { stage, verifier, typed: typed.to_owned(), seed, arithmetic: OnceLock::new() }
     }
@@ -51,7 +51,7 @@ impl<'a> Gate<'a> {
     /// # Errors
     /// The check that the strategy fails, or its scene: one line, with the command that shows it. A strategy that
     /// cannot serve the scene.
-    pub fn pass(&self, strategy: &Configured) -> Result<()> {
+    pub(crate) fn pass(&self, strategy: &Configured) -> Result<()> {
         let first = |checks: Vec<Check>| checks.into_iter().find(|check| !check.passed);
         let arithmetic = self.arithmetic.get_or_init(|| first(arithmetic(self.stage, self.seed)));
         let failed = match arithmetic {

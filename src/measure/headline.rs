@@ -7,10 +7,10 @@ use crate::base::claim::Claim;
 use crate::record::{Interval, Read, Reading, Summary};
 
 /// The relMSE that times are given to.
-pub const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
+pub(crate) const ERRORS: [f64; 3] = [0.1, 0.01, 0.001];
 
 /// A row that is being summarised.
-pub struct Entry<'a> {
+pub(crate) struct Entry<'a> {
     /// What is known of it so far.
     pub summary: &'a mut Summary,
     /// Its budgets.
@@ -21,7 +21,7 @@ pub struct Entry<'a> {
 
 /// What the readings of a scene were taken at.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Headline {
+pub(crate) struct Headline {
     /// CPU seconds at which errors are given.
     pub times_s: Vec<f64>,
     /// Which of [`ERRORS`] ranks the rows.
@@ -29,7 +29,7 @@ pub struct Headline {
 }
 
 /// Reads every row's curve, and ranks the unbiased ones.
-pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
+pub(crate) fn settle(entries: &mut [Entry<'_>]) -> Headline {
     let times_s = times(entries);
     entries.iter_mut().for_each(|entry| entry.read_at(&times_s));
     let ranked_by = ranked_by(entries);
@@ -45,7 +45,7 @@ pub fn settle(entries: &mut [Entry<'_>]) -> Headline {
 impl Entry<'_> {
     /// Reads its curve at [`ERRORS`] and at `times_s`: all that a row takes which is ranked among no others, another
     /// renderer's.
-    pub fn read_at(&mut self, times_s: &[f64]) {
+    pub(crate) fn read_at(&mut self, times_s: &[f64]) {
         self.summary.seconds_to = ERRORS.map(|error| self.seconds_to(error).0).to_vec();
         self.summary.error_at = times_s.iter().map(|&seconds| self.error_at(seconds)).collect();
     }

@@ -19,14 +19,14 @@ const HASH: usize = blake3::OUT_LEN;
 const EXTENSION: &str = ".film";
 
 /// The films of a result folder; removed when the comparison has ended.
-pub struct ImageStore {
+pub(crate) struct ImageStore {
     folder: PathBuf,
     plan: String,
 }
 
 impl ImageStore {
     /// The films in a result folder of a comparison by `plan`, which names the content of its scenes.
-    pub fn of(results: &Path, plan: &str) -> Self {
+    pub(crate) fn of(results: &Path, plan: &str) -> Self {
         Self { folder: results.join("films"), plan: plan.to_owned() }
     }
 
@@ -34,7 +34,7 @@ impl ImageStore {
     ///
     /// # Errors
     /// A folder or a file that cannot be written.
-    pub fn save(&self, row: &Row, image: &[Vec3]) -> Result<()> {
+    pub(crate) fn save(&self, row: &Row, image: &[Vec3]) -> Result<()> {
         std::fs::create_dir_all(&self.folder).map_err(Error::io("create", &self.folder))?;
         let mut bytes = MAGIC.to_vec();
         bytes.extend(self.identity(row).as_bytes());
@@ -44,12 +44,12 @@ impl ImageStore {
     }
 
     /// Whether the image of the run and budget of `row` is there and whole.
-    pub fn has(&self, row: &Row) -> bool {
+    pub(crate) fn has(&self, row: &Row) -> bool {
         self.read(row).is_some()
     }
 
     /// The image of the run and budget of `row` at so many receivers, if it is there and whole.
-    pub fn load(&self, row: &Row, receivers: usize) -> Option<Vec<Vec3>> {
+    pub(crate) fn load(&self, row: &Row, receivers: usize) -> Option<Vec<Vec3>> {
         self.read(row).filter(|image| image.len() == receivers)
     }
 
@@ -65,7 +65,7 @@ impl ImageStore {
     ///
     /// # Errors
     /// A folder that cannot be read; a film or a folder that cannot be removed.
-    pub fn remove(&self) -> Result<()> {
+    pub(crate) fn remove(&self) -> Result<()> {
         let entries = match std::fs::read_dir(&self.folder) {
             Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
             entries => entries.map_err(Error::io("read", &self.folder))?,

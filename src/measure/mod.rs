@@ -4,24 +4,24 @@
 //! quick checks. A [`Pilot`](plan::Pilot) says how far each strategy can go within its budget. [`compare`] runs all of
 //! it, interleaved, and hands out rows as they come. The [`engine`] alone reads a clock for a strategy.
 
-pub mod clock;
-pub mod compare;
-pub mod curve;
-pub mod engine;
-pub mod errors;
-pub mod experiment;
-pub mod figure;
-pub mod gate;
-pub mod headline;
-pub mod image_store;
-pub mod observer;
+pub(crate) mod clock;
+pub(crate) mod compare;
+pub(crate) mod curve;
+pub(crate) mod engine;
+pub(crate) mod errors;
+pub(crate) mod experiment;
+pub(crate) mod figure;
+pub(crate) mod gate;
+pub(crate) mod headline;
+pub(crate) mod image_store;
+pub(crate) mod observer;
 mod options;
 mod oracle;
-pub mod plan;
+pub(crate) mod plan;
 mod ranking;
-pub mod reference;
+pub(crate) mod reference;
 mod spread;
-pub mod summary;
-pub mod target;
-pub mod tiles;
-pub mod work;
+pub(crate) mod summary;
+pub(crate) mod target;
+pub(crate) mod tiles;
+pub(crate) mod work;

@@ -3,7 +3,7 @@
 use crate::base::error::{Error, Result};
 
 /// Watches long work. All methods may be called from any thread.
-pub trait Observer: Sync {
+pub(crate) trait Observer: Sync {
     /// A stage of `total` steps begins.
     fn begin(&self, _what: &str, _total: u64) {}
     /// Steps were finished.
@@ -25,6 +25,6 @@ pub trait Observer: Sync {
 }
 
 /// Watches nothing: for benches and tests.
-pub struct Unobserved;
+pub(crate) struct Unobserved;
 
 impl Observer for Unobserved {}

@@ -7,7 +7,7 @@ use crate::strategy::Configured;
 use std::path::Path;
 
 /// How a comparison is done.
-pub struct ComparisonOptions<'a> {
+pub(crate) struct ComparisonOptions<'a> {
     /// What somebody types to verify the scene, as `citylights verify scenes/first-night.toml`: to show a failure.
     pub typed: &'a str,
     /// The strategies.

@@ -22,7 +22,7 @@ use glam::Vec3;
 
 /// What one strategy may spend in one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Budget {
+pub(crate) struct Budget {
     /// Passes that suffice if they make the image's mean certain enough to see a bias of [`DETECTABLE`] in it.
     pub usual_passes: u32,
     /// Most passes, if they do not.
@@ -33,14 +33,14 @@ pub struct Budget {
 
 impl Budget {
     /// Up to `passes` and no more.
-    pub fn up_to(passes: u32, work_s: f64) -> Self {
+    pub(crate) fn up_to(passes: u32, work_s: f64) -> Self {
         Self { usual_passes: passes, most_passes: passes, work_s }
     }
 }
 
 /// What a pilot found.
 #[derive(Clone, Debug)]
-pub struct Pilot {
+pub(crate) struct Pilot {
     /// Nominal seconds of coming to every receiver of the frame once, whatever the number of passes.
     arrive_s: f64,
     /// Nominal seconds of a pass over the frame.
@@ -60,13 +60,13 @@ pub struct Pilot {
 }
 
 /// Receivers of a pilot's errors.
-pub const RECEIVERS: usize = 512;
+pub(crate) const RECEIVERS: usize = 512;
 
 /// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
 const SQUARES: usize = 16;
 
 /// A bias of the image's mean that runs should be able to see.
-pub const DETECTABLE: f64 = 0.05;
+pub(crate) const DETECTABLE: f64 = 0.05;
 
 /// Passes of a pilot, and passes that work is counted over.
 pub(super) const PASSES: u32 = 4;
@@ -79,7 +79,7 @@ impl Pilot {
     ///
     /// # Errors
     /// A strategy that cannot serve the scene.
-    pub fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64, meter: Meter<'_>) -> Result<Self> {
+    pub(crate) fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64, meter: Meter<'_>) -> Result<Self> {
         let (found, account) = meter.audit(|| Self::tried(target, truth, strategy, seed));
         Ok(Self { account, ..found? })
     }
@@ -141,7 +141,7 @@ impl Pilot {
     }
 
     /// The budgets that fit, in passes: 1, 4, 16 and so on; none if one pass is too much work.
-    pub fn ladder(&self, budget: Budget, runs: u32) -> Vec<u32> {
+    pub(crate) fn ladder(&self, budget: Budget, runs: u32) -> Vec<u32> {
         // 3 standard errors: Student's 97.5 % and 80 % points at 15 degrees of freedom; four times the variance, since
         // a pilot mostly misses the rare bright picks.
         let certain = 4.0 * self.energy_variance * (3.0 / DETECTABLE).powi(2) / f64::from(runs);
@@ -151,7 +151,7 @@ impl Pilot {
     }
 
     /// Nominal seconds of so many passes in one block.
-    pub fn work_s(&self, passes: u32) -> f64 {
+    pub(crate) fn work_s(&self, passes: u32) -> f64 {
         self.arrive_s + f64::from(passes) * self.pass_s
     }
 
@@ -160,7 +160,7 @@ impl Pilot {
     /// Numbers that are spread over a pixel's passes make it fall faster than 1/n. Seen: 4 to 5 times lower than that
     /// after 64 passes, where most lights are seen; the square root of what they add to the pilot's passes gives 4
     /// there.
-    pub fn expected_rel_mse(&self, passes: u32) -> f64 {
+    pub(crate) fn expected_rel_mse(&self, passes: u32) -> f64 {
         let passes = f64::from(passes.max(1));
         let spread = if self.spread { (passes / f64::from(PASSES)).max(1.0).sqrt() } else { 1.0 };
         self.bias2 + self.variance / (passes * spread)
@@ -168,7 +168,7 @@ impl Pilot {
 }
 
 /// The budgets of every plan up to `most` passes: powers of 4, and `most` itself where it is none.
-pub fn budgets(most: u32) -> impl Iterator<Item = u32> {
+pub(crate) fn budgets(most: u32) -> impl Iterator<Item = u32> {
     let powers = (0..16).map(|power| 1u32 << (2 * power)).take_while(move |&passes| passes < most);
     powers.chain((most > 0).then_some(most))
 }

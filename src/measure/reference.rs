@@ -26,7 +26,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// An exact image and how it came to be.
-pub struct Reference {
+pub(crate) struct Reference {
     /// The truth at the target's measured receivers.
     pub truth: Truth,
     /// Whether it is a sum without noise.
@@ -43,7 +43,7 @@ pub struct Reference {
 
 /// How exact an image must be, and what that may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub(crate) struct Wanted {
     /// Its own relMSE, at most.
     pub own_rel_mse: f64,
     /// Most counted work, in nominal CPU seconds: see [`RAY_S`].
@@ -54,24 +54,24 @@ pub struct Wanted {
 
 impl Wanted {
     /// This exact, within [`WORK_S`], at [`FEWEST`] receivers at least.
-    pub fn new(own_rel_mse: f64) -> Self {
+    pub(crate) fn new(own_rel_mse: f64) -> Self {
         Self { own_rel_mse, work_s: WORK_S, fewest: FEWEST }
     }
 }
 
 /// Nominal CPU seconds of a shadow ray to a point of a light, all around it included: 170 ns were seen on first-night (2
 /// cores of a busy AMD EPYC), 100 ns in a street of 34 lights.
-pub const RAY_S: f64 = 170e-9;
+pub(crate) const RAY_S: f64 = 170e-9;
 
 /// Nominal CPU seconds of coming past a light at a receiver, whether or not it is sampled: 13 to 30 ns were seen on
 /// stadium and downtown.
-pub const LIGHT_S: f64 = 20e-9;
+pub(crate) const LIGHT_S: f64 = 20e-9;
 
 /// Work of a reference where nobody says otherwise, in nominal CPU seconds: a minute of two cores.
-pub const WORK_S: f64 = 120.0;
+pub(crate) const WORK_S: f64 = 120.0;
 
 /// Receivers that are always measured, where there are so many.
-pub const FEWEST: usize = 256;
+pub(crate) const FEWEST: usize = 256;
 
 /// Part of the hash: to be raised whenever `render::refined` gives other numbers.
 const VERSION: u32 = 2;
@@ -85,7 +85,7 @@ impl Reference {
     ///
     /// # Errors
     /// As [`bounded`](Self::bounded).
-    pub fn compute(target: &Target<'_>, own_rel_mse: f64, cache: &Path, watch: &dyn Observer) -> Result<Self> {
+    pub(crate) fn compute(target: &Target<'_>, own_rel_mse: f64, cache: &Path, watch: &dyn Observer) -> Result<Self> {
         let wanted = Wanted { work_s: f64::INFINITY, ..Wanted::new(own_rel_mse) };
         Ok(Self::bounded(target, wanted, cache, watch)?.1)
     }
@@ -97,7 +97,7 @@ impl Reference {
     ///
     /// # Errors
     /// A cache that cannot be read or written; halves of the image that are not independent; the user's wish to stop.
-    pub fn bounded<'a>(
+    pub(crate) fn bounded<'a>(
         target: &Target<'a>,
         wanted: Wanted,
         cache: &Path,
@@ -146,7 +146,7 @@ impl Reference {
     }
 
     /// What a reader must know of it: whether the bound of work had a say, and in what.
-    pub fn notes(&self, target: &Target<'_>, wanted: Wanted) -> Vec<String> {
+    pub(crate) fn notes(&self, target: &Target<'_>, wanted: Wanted) -> Vec<String> {
         let Target { places, frame, .. } = target;
         let bound = format!("{:.0} nominal CPU s (--reference-work)", wanted.work_s);
         let mut notes = Vec::new();
@@ -291,7 +291,7 @@ fn name(stage: &Stage, receivers: &[Receiver], step: Step) -> String {
 }
 
 /// The content hash that names a scene: 32 hexadecimal digits.
-pub fn scene_hash(scene: &Scene) -> String {
+pub(crate) fn scene_hash(scene: &Scene) -> String {
     let mut hasher = blake3::Hasher::new();
     scene.digest(|bytes| {
         hasher.update(bytes);

@@ -13,7 +13,7 @@ use crate::record::{Interval, Point, Row, Summary};
 use crate::strategy::Configured;
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
-pub fn blank(strategy: &Configured) -> Summary {
+pub(crate) fn blank(strategy: &Configured) -> Summary {
     let claim = strategy.info().claim;
     let chooses = claim.chooses();
     Summary::blank(strategy.name().to_owned(), claim, chooses)
@@ -21,7 +21,7 @@ pub fn blank(strategy: &Configured) -> Summary {
 
 /// The summary of a strategy from its pilot, or why there is none, and its runs; without a pilot, of one that is not run
 /// against the clock.
-pub fn of(
+pub(crate) fn of(
     strategy: &Configured,
     pilot: Option<&Result<Pilot>>,
     ladder: &[u32],
@@ -45,7 +45,7 @@ pub fn of(
 }
 
 /// Bias and variance of a strategy's runs at its largest budget: from all of them, and without each in turn.
-pub struct Jackknife {
+pub(crate) struct Jackknife {
     all: Parts,
     without: Vec<Parts>,
 }
@@ -64,7 +64,7 @@ impl Jackknife {
 
     /// Squared bias as far as a claim lets it count: 0 of what claims to have none, never negative; not a number where it
     /// is not known.
-    pub fn counted_bias2(&self, claim: &Claim) -> Figure {
+    pub(crate) fn counted_bias2(&self, claim: &Claim) -> Figure {
         if !claim.may_be_biased() {
             return Figure::certain(0.0);
         }
@@ -82,7 +82,7 @@ impl Jackknife {
 }
 
 /// A summary with the figures of a strategy's runs, but for what depends on the other rows; and its bias for what does.
-pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32]) -> (Summary, Jackknife) {
+pub(crate) fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32]) -> (Summary, Jackknife) {
     let jackknife = Jackknife::of(truth, runs);
     let Some(last) = ladder.last().map(|&passes| runs.at(passes)).filter(|rows| !rows.is_empty()) else {
         return (summary, jackknife);
@@ -129,7 +129,7 @@ pub fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32
 }
 
 /// The bias of the image's mean, as a share of it, with an interval at a confidence within (0, 1).
-pub fn bias(truth: &Truth, rows: &[&Row], confidence: f64) -> Interval {
+pub(crate) fn bias(truth: &Truth, rows: &[&Row], confidence: f64) -> Interval {
     let figure = Figure::signed_mean(rows.iter().map(|row| row.energy_ratio - 1.0).collect());
     let Bounds { low, high } = figure.bounds(confidence);
     // The reference's own error does not go away with more runs.

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 
 /// A frame, and the receivers in it that errors are taken over.
 #[derive(Clone)]
-pub struct Target<'a> {
+pub(crate) struct Target<'a> {
     /// The scene made ready.
     pub stage: &'a Stage,
     /// The receivers that strategies are run on.
@@ -21,48 +21,48 @@ pub struct Target<'a> {
 
 impl<'a> Target<'a> {
     /// All that the camera sees, measured everywhere.
-    pub fn whole(stage: &'a Stage) -> Self {
+    pub(crate) fn whole(stage: &'a Stage) -> Self {
         let frame = Cow::Borrowed(stage.receivers());
         Self { stage, places: (0..frame.len()).collect(), frame }
     }
 
     /// These receivers, whoever chose them: a frame of their own, measured everywhere.
-    pub fn of(stage: &'a Stage, receivers: Vec<Receiver>) -> Self {
+    pub(crate) fn of(stage: &'a Stage, receivers: Vec<Receiver>) -> Self {
         Self { stage, places: (0..receivers.len()).collect(), frame: Cow::Owned(receivers) }
     }
 
     /// The same frame measured at up to `count` of the measured receivers: one from each stratum, see [`places`].
-    pub fn thinned(&self, count: usize) -> Self {
+    pub(crate) fn thinned(&self, count: usize) -> Self {
         let places = places(self.places.len(), count).map(|i| self.places[i]).collect();
         Self { places, ..self.clone() }
     }
 
     /// Whether errors are taken at some of the frame's receivers only.
-    pub fn is_subset(&self) -> bool {
+    pub(crate) fn is_subset(&self) -> bool {
         self.places.len() < self.frame.len()
     }
 
     /// The measured receivers.
-    pub fn measured(&self) -> Vec<Receiver> {
+    pub(crate) fn measured(&self) -> Vec<Receiver> {
         self.places.iter().map(|&i| self.frame[i]).collect()
     }
 
     /// An image of the frame at the measured receivers.
-    pub fn at_places(&self, image: &[Vec3]) -> Vec<Vec3> {
+    pub(crate) fn at_places(&self, image: &[Vec3]) -> Vec<Vec3> {
         self.places.iter().map(|&i| image[i]).collect()
     }
 }
 
 /// `count` receivers at equal steps through the list, whose order follows squares of the image: one from each stratum.
-pub fn spread(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
+pub(crate) fn spread(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
     places(receivers.len(), count).map(|i| receivers[i]).collect()
 }
 
 /// Neighbours of a square. Receivers follow squares of 8 x 8 pixels.
-pub const SQUARE: usize = 64;
+pub(crate) const SQUARE: usize = 64;
 
 /// `count` squares of [`SQUARE`] neighbouring receivers at equal steps through the list; all of it where it is shorter.
-pub fn squares(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
+pub(crate) fn squares(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
     if receivers.len() <= count * SQUARE {
         return receivers.to_vec();
     }
@@ -71,7 +71,7 @@ pub fn squares(receivers: &[Receiver], count: usize) -> Vec<Receiver> {
 }
 
 /// Where [`spread`] finds its receivers in a list of `all`.
-pub fn places(all: usize, count: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn places(all: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(all);
     (0..count).map(move |i| (2 * i + 1) * all / (2 * count))
 }

@@ -6,7 +6,7 @@
 use crate::base::counts::Counts;
 
 /// Names the rates below in records: to be raised whenever one changes, since other rows follow.
-pub const RATES: u32 = 1;
+pub(crate) const RATES: u32 = 1;
 
 /// ns a receiver and pass, for the harness's own loop.
 const SAMPLE: f64 = 5.0;
@@ -22,7 +22,7 @@ const WEIGHED: f64 = 5.0;
 const CANDIDATE: f64 = 15.0;
 
 /// Nominal seconds of counted work.
-pub fn nominal_s(counts: &Counts) -> f64 {
+pub(crate) fn nominal_s(counts: &Counts) -> f64 {
     let rays = counts.shadow_rays + counts.choosing_rays;
     let parts = [
         (counts.samples, SAMPLE),

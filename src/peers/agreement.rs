@@ -11,11 +11,11 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 
 /// The side of a block, in pixels.
-pub const SIDE: u32 = 8;
+pub(crate) const SIDE: u32 = 8;
 
 /// How far images of independent runs are from the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Agreement {
+pub(crate) struct Agreement {
     /// Mean luminance over that of the truth, with its 95 % interval over the runs and the truth's own error.
     pub ratio: Interval,
     /// Blocks of [`SIDE`] x [`SIDE`] pixels with something to compare in them.
@@ -30,7 +30,7 @@ pub struct Agreement {
 
 impl Agreement {
     /// Compares the images of at least three runs with the truth; `pixels` are the column and row of each receiver.
-    pub fn of(truth: &Truth, images: &[&[Vec3]], pixels: &[(u32, u32)]) -> Option<Self> {
+    pub(crate) fn of(truth: &Truth, images: &[&[Vec3]], pixels: &[(u32, u32)]) -> Option<Self> {
         if images.len() < 3 || pixels.is_empty() {
             return None;
         }

@@ -15,7 +15,7 @@ use glam::Vec3;
 const OFF: f64 = 0.02;
 
 /// The places in `receivers`, some or all of the stage's, that can be compared, ascending.
-pub fn clear(stage: &Stage, receivers: &[Receiver]) -> Vec<usize> {
+pub(crate) fn clear(stage: &Stage, receivers: &[Receiver]) -> Vec<usize> {
     let clear = |at: &Receiver| !beside_emitter(stage, at) && !on_silhouette(stage, at);
     receivers.iter().enumerate().filter(|(_, at)| clear(at)).map(|(i, _)| i).collect()
 }

@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How peers are run.
-pub struct PeerOptions<'a> {
+pub(crate) struct PeerOptions<'a> {
     /// The peers.
     pub peers: &'a [Peer],
     /// The Python that has them.
@@ -53,7 +53,7 @@ pub struct PeerOptions<'a> {
 
 /// What peers came to on one scene.
 #[derive(Default)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// All their rows.
     pub rows: Vec<Row>,
     /// One for each peer.
@@ -67,7 +67,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// A result folder that cannot be written, or whose folder `peers` is another's or in use; the user's wish to stop.
-pub fn measure(
+pub(crate) fn measure(
     target: &Target<'_>,
     truth: &Truth,
     options: &PeerOptions<'_>,

@@ -7,9 +7,9 @@
 //! What is compared is light, not edges: only receivers whose pixel is [clear](mask) of emitters and silhouettes. A peer
 //! that is not installed, fails or hangs is a row that says so, and never the end of a comparison.
 
-pub mod agreement;
-pub mod mask;
-pub mod measure;
+pub(crate) mod agreement;
+pub(crate) mod mask;
+pub(crate) mod measure;
 mod script;
 
 use crate::base::error::{Error, Result};
@@ -51,7 +51,7 @@ const KINDS: [Kind; 2] = [
 const CONTRACT: (&str, &str) = ("contract.py", include_str!("scripts/contract.py"));
 
 /// A renderer with its parameters settled.
-pub struct Peer {
+pub(crate) struct Peer {
     name: String,
     kind: &'static Kind,
     arguments: Vec<String>,
@@ -63,7 +63,7 @@ impl Peer {
     /// # Errors
     /// An unknown name or parameter, with those that come near it; a value that is not allowed, with those that are;
     /// a parameter without a value, or given twice.
-    pub fn parse(text: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str) -> Result<Self> {
         let (name, rest) = text.trim().split_once(':').unwrap_or((text.trim(), ""));
         let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {
             let near = names::near(name, KINDS.iter().map(|kind| kind.name));
@@ -79,7 +79,7 @@ impl Peer {
     }
 
     /// Its name with the parameters that differ from their defaults: `cycles:light-tree=off`.
-    pub fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 }

@@ -3,7 +3,7 @@
 //! By what was fixed when this was built (`build.rs`): nothing is executed here.
 
 /// The processor's name, as far as the system tells.
-pub fn cpu() -> String {
+pub(crate) fn cpu() -> String {
     let described = std::fs::read_to_string("/proc/cpuinfo").ok();
     described
         .as_deref()
@@ -13,43 +13,43 @@ pub fn cpu() -> String {
 }
 
 /// Cores that this process may use.
-pub fn cores() -> u32 {
+pub(crate) fn cores() -> u32 {
     std::thread::available_parallelism().map_or(1, |n| n.get() as u32)
 }
 
 /// Operating system and architecture.
-pub fn os() -> String {
+pub(crate) fn os() -> String {
     format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
 }
 
 /// Today, UTC, as `2026-11-22`.
-pub fn date() -> String {
+pub(crate) fn date() -> String {
     jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
 }
 
 /// The crate's version.
-pub fn version() -> String {
+pub(crate) fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
 /// Revision of the source that this was built from, `unknown` outside its checkout; `+` marks uncommitted changes.
-pub fn revision() -> String {
+pub(crate) fn revision() -> String {
     env!("CITYLIGHTS_REVISION").into()
 }
 
 /// The compiler that built this.
-pub fn compiler() -> String {
+pub(crate) fn compiler() -> String {
     env!("CITYLIGHTS_COMPILER").into()
 }
 
 /// What changes the code: debug assertions, the level of optimisation, the target and its features.
-pub fn flags() -> String {
+pub(crate) fn flags() -> String {
     let checks = if cfg!(debug_assertions) { "debug assertions" } else { "release" };
     format!("{checks}, {}", env!("CITYLIGHTS_FLAGS"))
 }
 
 /// What makes figures doubtful here.
-pub fn warnings() -> Vec<String> {
+pub(crate) fn warnings() -> Vec<String> {
     let mut warnings = Vec::new();
     if cfg!(debug_assertions) {
         warnings.push("built with debug assertions: times are not those of a release build".into());

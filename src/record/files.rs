@@ -4,14 +4,14 @@ use crate::base::error::Error;
 use std::path::Path;
 
 /// The file of a [`RunRecord`](super::run::RunRecord) in its folder.
-pub const RUN_FILE: &str = "run.json";
+pub(crate) const RUN_FILE: &str = "run.json";
 /// The file of the [`Row`](super::row::Row)s in their folder.
-pub const ROWS_FILE: &str = "runs.csv";
+pub(crate) const ROWS_FILE: &str = "runs.csv";
 /// The file of a [`StudyRecord`](super::study::StudyRecord) in its folder.
-pub const STUDY_FILE: &str = "study.json";
+pub(crate) const STUDY_FILE: &str = "study.json";
 
 /// `name` with everything but ASCII letters, digits, `.`, `_` and `-` replaced by `-`, safe to name a file with.
-pub fn file_name(name: &str) -> String {
+pub(crate) fn file_name(name: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };
     name.chars().map(kept).collect()
 }

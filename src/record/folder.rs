@@ -13,7 +13,7 @@ use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// The file that marks a result folder.
-pub const MARK: &str = ".citylights";
+pub(crate) const MARK: &str = ".citylights";
 
 /// Version of the mark; a folder of another is refused.
 const MARK_SCHEMA: u32 = 1;

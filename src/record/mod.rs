@@ -19,21 +19,21 @@
 //! | which version of which files is it? | [`SCHEMA`], `files` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
-pub mod environment;
+pub(crate) mod environment;
 mod files;
-pub mod folder;
-pub mod interval;
+pub(crate) mod folder;
+pub(crate) mod interval;
 mod number;
 mod origin;
 mod program;
-pub mod row;
-pub mod run;
-pub mod scene;
+pub(crate) mod row;
+pub(crate) mod run;
+pub(crate) mod scene;
 mod schema;
-pub mod store;
+pub(crate) mod store;
 pub mod study;
-pub mod study_store;
-pub mod summary;
+pub(crate) mod study_store;
+pub(crate) mod summary;
 
 pub use crate::base::counts::Counts;
 pub use folder::{Kind, ResultFolder};

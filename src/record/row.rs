@@ -3,7 +3,7 @@
 use crate::base::interval::LARGEST;
 
 /// The columns, in order.
-pub const COLUMNS: [&str; 28] = [
+pub(crate) const COLUMNS: [&str; 28] = [
     "scene",
     "strategy",
     "run",

@@ -14,13 +14,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-pub use super::files::{ROWS_FILE, RUN_FILE, file_name};
+pub(crate) use super::files::{ROWS_FILE, RUN_FILE, file_name};
 
 /// Writes `run.json` into `folder`, whole or not at all; it is written again as scenes finish.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
+pub(crate) fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
     write_record(&folder.join(RUN_FILE), run)
 }
 
@@ -28,7 +28,7 @@ pub fn write_run(folder: &Path, run: &RunRecord) -> Result<()> {
 ///
 /// # Errors
 /// A file that cannot be read; a record of another schema, or with a mistake, with its line.
-pub fn read_run(folder: &Path) -> Result<RunRecord> {
+pub(crate) fn read_run(folder: &Path) -> Result<RunRecord> {
     read_record(&folder.join(RUN_FILE), SCHEMA)
 }
 
@@ -36,7 +36,7 @@ pub fn read_run(folder: &Path) -> Result<RunRecord> {
 ///
 /// # Errors
 /// Another comparison, by what it differs in; a record that cannot be read, or rows whose record is gone.
-pub fn begun(folder: &Path, own: &RunRecord) -> Result<Option<RunRecord>> {
+pub(crate) fn begun(folder: &Path, own: &RunRecord) -> Result<Option<RunRecord>> {
     if folder.join(RUN_FILE).exists() {
         let earlier = read_run(folder)?;
         origin::check(folder, "comparison", &earlier.command, &earlier.origin(), &own.origin())?;
@@ -75,7 +75,7 @@ pub(super) fn read_record<T: DeserializeOwned>(path: &Path, known: u32) -> Resul
 
 /// The rows of a `runs.csv`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
+pub(crate) struct Rows {
     /// The finished ones, in the order written.
     pub rows: Vec<Row>,
     /// Whether a last line without an end was left out: the run was interrupted while writing it.
@@ -88,7 +88,7 @@ pub struct Rows {
 ///
 /// # Errors
 /// A file that cannot be read; anything else that is not a row, with file, line and column.
-pub fn read_rows(folder: &Path) -> Result<Rows> {
+pub(crate) fn read_rows(folder: &Path) -> Result<Rows> {
     let path = folder.join(ROWS_FILE);
     let text = fs::read_to_string(&path).map_err(Error::io("read", &path))?;
     parse_rows(&path, &text)
@@ -130,7 +130,7 @@ fn check_header(path: &Path, header: &csv::StringRecord) -> Result<()> {
 
 /// Appends rows to `runs.csv`, each at once: an interrupted run keeps all finished rows.
 #[derive(Debug)]
-pub struct RowWriter {
+pub(crate) struct RowWriter {
     file: File,
     path: PathBuf,
 }
@@ -140,7 +140,7 @@ impl RowWriter {
     ///
     /// # Errors
     /// A file that is already there, or that cannot be written.
-    pub fn create(folder: &Path) -> Result<Self> {
+    pub(crate) fn create(folder: &Path) -> Result<Self> {
         let path = folder.join(ROWS_FILE);
         let file = OpenOptions::new().append(true).create_new(true).open(&path).map_err(Error::io("create", &path))?;
         let mut writer = Self { file, path };
@@ -154,7 +154,7 @@ impl RowWriter {
     ///
     /// # Errors
     /// A file that cannot be read or written; a finished line that is no row, with file, line and column.
-    pub fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
+    pub(crate) fn resume(folder: &Path) -> Result<(Self, Vec<Row>)> {
         let path = folder.join(ROWS_FILE);
         let text = match fs::read_to_string(&path) {
             Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
@@ -171,7 +171,7 @@ impl RowWriter {
     ///
     /// # Errors
     /// A file that cannot be read or written; a finished line that is no row, with file, line and column.
-    pub fn forget(&mut self, unwanted: impl Fn(&Row) -> bool) -> Result<()> {
+    pub(crate) fn forget(&mut self, unwanted: impl Fn(&Row) -> bool) -> Result<()> {
         let text = fs::read_to_string(&self.path).map_err(Error::io("read", &self.path))?;
         let mut rows = parse_rows(&self.path, &text)?.rows;
         rows.retain(|row| !unwanted(row));
@@ -183,7 +183,7 @@ impl RowWriter {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&mut self, row: &Row) -> Result<()> {
+    pub(crate) fn write(&mut self, row: &Row) -> Result<()> {
         self.append(&row.fields())
     }
 
@@ -191,7 +191,7 @@ impl RowWriter {
     ///
     /// # Errors
     /// A file that cannot be brought to disk.
-    pub fn sync(&self) -> Result<()> {
+    pub(crate) fn sync(&self) -> Result<()> {
         self.file.sync_all().map_err(Error::io("write", &self.path))
     }
 

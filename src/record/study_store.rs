@@ -12,11 +12,11 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-pub use super::files::STUDY_FILE;
+pub(crate) use super::files::STUDY_FILE;
 
 /// A study being made, in a folder that is its own: what is known is on disk at once, so that an interruption loses
 /// none of it, and a study that is begun again asks what it [`has`](Self::has).
-pub struct StudyWriter {
+pub(crate) struct StudyWriter {
     folder: ResultFolder,
     study: Study,
 }
@@ -27,7 +27,7 @@ impl StudyWriter {
     /// # Errors
     /// Another study, by what it differs in; files of this one that cannot be read, or say what is no study; a folder
     /// that cannot be written.
-    pub fn open(folder: ResultFolder, record: StudyRecord) -> Result<Self> {
+    pub(crate) fn open(folder: ResultFolder, record: StudyRecord) -> Result<Self> {
         let path = folder.path();
         let study = if is_study(path) {
             let study = read_study(path)?;
@@ -59,7 +59,7 @@ impl StudyWriter {
     /// # Panics
     ///
     /// If there is no such table or column: a mistake in a study's own code, here as below.
-    pub fn has(&self, table: &str, key: Key<'_>, count: usize) -> bool {
+    pub(crate) fn has(&self, table: &str, key: Key<'_>, count: usize) -> bool {
         let (record, rows) = self.table(table);
         rows.iter().filter(|cells| has(record, cells, key)).count() == count
     }
@@ -74,7 +74,7 @@ impl StudyWriter {
     ///
     /// # Errors
     /// A table's file that cannot be written.
-    pub fn put(&mut self, table: &str, key: Key<'_>, rows: Vec<Cells>) -> Result<()> {
+    pub(crate) fn put(&mut self, table: &str, key: Key<'_>, rows: Vec<Cells>) -> Result<()> {
         let place = self.place(table);
         let (record, there) = (&self.study.record.tables[place], &mut self.study.rows[place]);
         for cells in &rows {
@@ -93,7 +93,7 @@ impl StudyWriter {
     ///
     /// # Errors
     /// A table's file that cannot be written.
-    pub fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
+    pub(crate) fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
         let place = self.place(table);
         self.study.rows[place].push(cells);
         write_table(self.folder.path(), &self.study.record.tables[place], &self.study.rows[place])
@@ -103,7 +103,7 @@ impl StudyWriter {
     ///
     /// # Errors
     /// A record that cannot be written.
-    pub fn note(&mut self, note: String) -> Result<()> {
+    pub(crate) fn note(&mut self, note: String) -> Result<()> {
         if self.study.record.notes.contains(&note) {
             return Ok(());
         }
@@ -115,7 +115,7 @@ impl StudyWriter {
     ///
     /// # Errors
     /// A record that cannot be written.
-    pub fn picture(&mut self, file: &str, title: String) -> Result<Option<PathBuf>> {
+    pub(crate) fn picture(&mut self, file: &str, title: String) -> Result<Option<PathBuf>> {
         let pictures = &mut self.study.record.pictures;
         if !pictures.iter().any(|picture| picture.file == file) {
             pictures.push(PictureRecord { file: file.to_owned(), title });
@@ -130,7 +130,7 @@ impl StudyWriter {
     /// # Panics
     ///
     /// If there is no such table.
-    pub fn table(&self, name: &str) -> (&TableRecord, &[Cells]) {
+    pub(crate) fn table(&self, name: &str) -> (&TableRecord, &[Cells]) {
         let at = self.place(name);
         (&self.study.record.tables[at], &self.study.rows[at])
     }
@@ -145,7 +145,7 @@ impl StudyWriter {
     ///
     /// # Errors
     /// An error of `derive`; a record that cannot be written.
-    pub fn finish(mut self, wall_s: f64, derive: impl FnOnce(&Path, &Study) -> Result<()>) -> Result<Study> {
+    pub(crate) fn finish(mut self, wall_s: f64, derive: impl FnOnce(&Path, &Study) -> Result<()>) -> Result<Study> {
         let finished = self.study.record.finished;
         if !finished {
             (self.study.record.finished, self.study.record.wall_s) = (true, wall_s);
@@ -159,7 +159,7 @@ impl StudyWriter {
 }
 
 /// Columns and their cells, by which rows that were measured together are told from others; all rows where there are none.
-pub type Key<'a> = &'a [(&'a str, Cell)];
+pub(crate) type Key<'a> = &'a [(&'a str, Cell)];
 
 /// Whether a row has the cells of `key`.
 fn has(table: &TableRecord, cells: &Cells, key: Key<'_>) -> bool {
@@ -167,7 +167,7 @@ fn has(table: &TableRecord, cells: &Cells, key: Key<'_>) -> bool {
 }
 
 /// Whether `folder` holds a study.
-pub fn is_study(folder: &Path) -> bool {
+pub(crate) fn is_study(folder: &Path) -> bool {
     folder.join(STUDY_FILE).exists()
 }
 
@@ -177,7 +177,7 @@ pub fn is_study(folder: &Path) -> bool {
 /// # Errors
 /// A file that cannot be read; a record of another schema, or with a mistake, with its line; anything else that is not
 /// a row, with file, line and column.
-pub fn read_study(folder: &Path) -> Result<Study> {
+pub(crate) fn read_study(folder: &Path) -> Result<Study> {
     let record: StudyRecord = store::read_record(&folder.join(STUDY_FILE), STUDY_SCHEMA)?;
     let read = |table| read_table(&table_file(folder, table), table, record.finished);
     let rows = record.tables.iter().map(read).collect::<Result<_>>()?;

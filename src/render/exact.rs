@@ -34,7 +34,7 @@ impl Exact {
 }
 
 /// The exact radiance of a receiver; `points` extra points a half for triangles, `seed` names their random numbers.
-pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
+pub(crate) fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     let mut result = Exact::default();
     let lights = stage.scene().lights();
     result.sum = deltas(stage, at, &mut result.rays);
@@ -65,14 +65,14 @@ fn triangles(lights: &[Light]) -> impl Iterator<Item = &Light> {
 }
 
 /// Side of the grid of points that a triangle gets which could add `share` of the light; at least one point.
-pub fn grid_side(points: u32, share: f64) -> u32 {
+pub(crate) fn grid_side(points: u32, share: f64) -> u32 {
     (f64::from(points) * share).sqrt() as u32 + 1
 }
 
 /// Mean contribution, in cd/m^2, over a jittered grid of `side * side` points on a triangle, shadow rays included.
 ///
 /// By area, however the stage draws its points: what judges those must not share their arithmetic.
-pub fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
+pub(crate) fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
     let mut sum = DVec3::ZERO;
     grid(stage, at, light, side, rng, rays, |value| sum += value);
     sum / f64::from(side * side)
@@ -97,7 +97,7 @@ pub(super) fn grid(
 }
 
 /// The contribution of a point of a light that is drawn `by` a way, shadow ray included.
-pub fn shadowed(stage: &Stage, by: LightSampling, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
+pub(crate) fn shadowed(stage: &Stage, by: LightSampling, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
     let Ok(arrival) = contribution::<0b1111>(by, light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
     let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);

@@ -10,7 +10,7 @@ use crate::visibility::stage::Stage;
 use glam::DVec3;
 
 /// A kernel: adds the radiance of `picks` (of `receivers`, `passes` calls each) to `sums`.
-pub type Kernel = fn(&Stage, &[Receiver], usize, &PickBuffer, &mut [DVec3], &mut Counts);
+pub(crate) type Kernel = fn(&Stage, &[Receiver], usize, &PickBuffer, &mut [DVec3], &mut Counts);
 
 const POINTS: u8 = Kind::Point.bit();
 const CONES: u8 = POINTS | Kind::Spot.bit();
@@ -18,12 +18,12 @@ const LOCAL: u8 = CONES | Kind::Triangle.bit();
 const EVERY: u8 = LOCAL | Kind::Directional.bit();
 
 /// The smallest compiled set of light kinds that holds all that a scene has.
-pub fn compiled_kinds(kinds: u8) -> u8 {
+pub(crate) fn compiled_kinds(kinds: u8) -> u8 {
     [POINTS, CONES, LOCAL].into_iter().find(|set| kinds & !set == 0).unwrap_or(EVERY)
 }
 
 /// The kernel for a scene's needs; `counting` ones are slower and are never timed.
-pub fn kernel(needs: Needs, counting: bool) -> Kernel {
+pub(crate) fn kernel(needs: Needs, counting: bool) -> Kernel {
     fn occluded<const KINDS: u8>(occlusion: bool, counting: bool) -> Kernel {
         match (occlusion, counting) {
             (true, true) => shade::<KINDS, true, true>,

@@ -3,9 +3,9 @@
 //! A sampler fills a buffer of picks for a tile of receivers and a block of passes; one kernel, compiled for what the
 //! scene needs, shades them. [`Film`](film::Film) sums in f64; [`exact`] is the reference that no sampler touches.
 
-pub mod exact;
+pub(crate) mod exact;
 pub mod film;
-pub mod kernel;
+pub(crate) mod kernel;
 pub mod passes;
-pub mod picture;
-pub mod refined;
+pub(crate) mod picture;
+pub(crate) mod refined;

@@ -5,7 +5,7 @@ use crate::visibility::view::Seen;
 use glam::Vec3;
 
 /// Radiance in cd/m^2 of every pixel, row by row from the top; `receivers` holds that of the stage's receivers.
-pub fn picture(stage: &Stage, receivers: &[Vec3]) -> Vec<[f32; 3]> {
+pub(crate) fn picture(stage: &Stage, receivers: &[Vec3]) -> Vec<[f32; 3]> {
     let radiance = |seen: &Seen| match seen {
         Seen::Sky | Seen::EmitterBack => Vec3::ZERO,
         Seen::Emitter(light) => stage.scene().lights()[*light as usize].colour,

@@ -22,7 +22,7 @@ use std::f64::consts::FRAC_1_PI;
 
 /// What a shadow ray must be worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Price {
+pub(crate) struct Price {
     /// How squared errors are weighed.
     pub relative: RelMse,
     /// relMSE of the receiver that a ray takes away, at least.
@@ -31,7 +31,7 @@ pub struct Price {
 
 /// The variance of the mean of a jittered grid of `n` points falls as `n^-FALL` in a penumbra, where only the cells on the
 /// shadow's edge matter, and faster in full light.
-pub const FALL: f64 = 1.5;
+pub(crate) const FALL: f64 = 1.5;
 
 /// Points of a receiver's first looks, on top of one a light.
 const POINTS: u32 = 64;
@@ -49,7 +49,7 @@ const MOST: f64 = 2048.0;
 const UNSEEN: f64 = 0.3;
 
 /// The exact radiance of a receiver, at a price; `seed` names the random numbers.
-pub fn refined(stage: &Stage, at: &Receiver, price: Price, seed: u64) -> Exact {
+pub(crate) fn refined(stage: &Stage, at: &Receiver, price: Price, seed: u64) -> Exact {
     let mut rays = 0;
     let sum = deltas(stage, at, &mut rays);
     let lights = stage.scene().lights().iter().filter(|light| light.kind() == Kind::Triangle);

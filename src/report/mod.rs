@@ -14,7 +14,7 @@ mod page;
 mod plot;
 mod rows;
 mod sheet;
-pub mod splice;
+pub(crate) mod splice;
 mod study;
 mod sweep;
 mod table;

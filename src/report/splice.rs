@@ -13,7 +13,7 @@ use std::path::Path;
 /// # Errors
 /// A page that cannot be read or written; a section that has one end, stands there twice or ends before it begins, with
 /// its line.
-pub fn splice(page: &Path, name: &str, body: &str) -> Result<()> {
+pub(crate) fn splice(page: &Path, name: &str, body: &str) -> Result<()> {
     let text = match std::fs::read_to_string(page) {
         Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
         read => read.map_err(Error::io("read", page))?,
@@ -26,7 +26,7 @@ pub fn splice(page: &Path, name: &str, body: &str) -> Result<()> {
 ///
 /// # Errors
 /// A page that cannot be read; a section that has one end, stands there twice or ends before it begins, with its line.
-pub fn is_current(page: &Path, name: &str, body: &str) -> Result<bool> {
+pub(crate) fn is_current(page: &Path, name: &str, body: &str) -> Result<bool> {
     let text = std::fs::read_to_string(page).map_err(Error::io("read", page))?;
     Ok(spliced(page, &text, name, body)? == text)
 }

@@ -18,7 +18,7 @@ pub(super) struct Drawn {
 
 /// A triangle light as a receiver sees it.
 #[inline]
-pub fn seen(light: &Light, at: &Receiver) -> Seen {
+pub(crate) fn seen(light: &Light, at: &Receiver) -> Seen {
     let first = light.position.as_dvec3() - at.position.as_dvec3();
     Seen::new([first, first + light.a.as_dvec3(), first + light.b.as_dvec3()])
 }

@@ -1,5 +1,5 @@
 //! What does a point of a light add at a receiver?
 
-pub mod by_angle;
+pub(crate) mod by_angle;
 pub mod contribution;
 pub mod importance;

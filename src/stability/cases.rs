@@ -9,7 +9,7 @@ use crate::base::triangle::SolidAngle;
 
 /// An extreme case.
 #[derive(Clone, Copy)]
-pub struct Case {
+pub(crate) struct Case {
     /// Its name: what is computed and where.
     pub name: &'static str,
     /// What is hard about it, and in what the error is measured.
@@ -19,7 +19,7 @@ pub struct Case {
 }
 
 /// All of them, in the order of the table.
-pub const CASES: &[Case] = &[
+pub(crate) const CASES: &[Case] = &[
     Case {
         name: "solid-angle/ordinary",
         what: "any sign, any size: the denominator is negative beyond pi",

@@ -9,13 +9,13 @@
 mod bounds;
 mod cases;
 mod choices;
-pub mod precise;
+pub(crate) mod precise;
 mod reach;
 mod tally;
-pub mod textbook;
+pub(crate) mod textbook;
 mod trees;
-pub mod triangles;
-pub mod vectors;
+pub(crate) mod triangles;
+pub(crate) mod vectors;
 
-pub use cases::{CASES, Case};
-pub use tally::{Finding, Tally};
+pub(crate) use cases::CASES;
+pub(crate) use tally::{Finding, Tally};

@@ -38,7 +38,7 @@ fn sin_cos(angle: f64) -> (DoubleDouble, DoubleDouble) {
 }
 
 /// The angle of `(x, y)` from the x axis, for `y` of 0 or more.
-pub fn arctan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
+pub(crate) fn arctan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
     let about = y.high.atan2(x.high);
     let radius = (x * x + y * y).sqrt();
     if radius.high == 0.0 {
@@ -50,7 +50,7 @@ pub fn arctan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
 }
 
 /// Signed solid angle in steradians of a triangle seen from the origin; positive when `a·(b×c) > 0`, 0 when it is 0.
-pub fn solid_angle(corners: [[f64; 3]; 3]) -> f64 {
+pub(crate) fn solid_angle(corners: [[f64; 3]; 3]) -> f64 {
     of_angle(corners.map(point))
 }
 
@@ -68,7 +68,7 @@ fn of_angle([a, b, c]: [Point; 3]) -> f64 {
 
 /// Where a point of weights `(b1, b2)` lies, in shares of the solid angle: on the first corner's side of the line from the second
 /// corner through the point, and of a narrow wedge about that line, before the point.
-pub fn shares(corners: [[f64; 3]; 3], [b1, b2]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn shares(corners: [[f64; 3]; 3], [b1, b2]: [f64; 2]) -> [f64; 2] {
     let one = DoubleDouble::from(1.0);
     let towards = one - DoubleDouble::from(b1);
     let share = DoubleDouble::from(b2).over(towards);
@@ -86,7 +86,7 @@ pub fn shares(corners: [[f64; 3]; 3], [b1, b2]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Irradiance for unit radiance of a triangle that shines to both sides, clipped at the horizon of a unit `normal`.
-pub fn irradiance(corners: [[f64; 3]; 3], normal: [f64; 3]) -> f64 {
+pub(crate) fn irradiance(corners: [[f64; 3]; 3], normal: [f64; 3]) -> f64 {
     let (corners, normal) = (corners.map(point), point(normal));
     let height = |p: Point| DoubleDouble::dot(normal, p);
     let above: Vec<Point> = (0..3)

@@ -2,7 +2,7 @@
 
 /// Errors of many results of one kind.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub(crate) struct Tally {
     errors: Vec<f64>,
     /// Results that are NaN.
     pub nan: usize,
@@ -14,7 +14,7 @@ pub struct Tally {
 
 impl Tally {
     /// Counts a result of either sign, which is `error` off in whatever unit.
-    pub fn add(&mut self, result: f64, error: f64) {
+    pub(crate) fn add(&mut self, result: f64, error: f64) {
         self.nan += usize::from(result.is_nan());
         self.infinite += usize::from(result.is_infinite());
         // What is no number is as wrong as can be.
@@ -22,23 +22,23 @@ impl Tally {
     }
 
     /// Counts a result that may not be negative.
-    pub fn add_positive(&mut self, result: f64, error: f64) {
+    pub(crate) fn add_positive(&mut self, result: f64, error: f64) {
         self.negative += usize::from(result < 0.0);
         self.add(result, error);
     }
 
     /// How many results.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.errors.len()
     }
 
     /// The largest error; 0 of none.
-    pub fn worst(&self) -> f64 {
+    pub(crate) fn worst(&self) -> f64 {
         self.errors.iter().copied().fold(0.0, f64::max)
     }
 
     /// The error that 99 % do not exceed; 0 of none.
-    pub fn p99(&self) -> f64 {
+    pub(crate) fn p99(&self) -> f64 {
         let mut sorted = self.errors.clone();
         sorted.sort_by(f64::total_cmp);
         // The next one up: between a number and infinity there is nothing.
@@ -47,19 +47,19 @@ impl Tally {
     }
 
     /// Results that are no numbers or of the wrong sign.
-    pub fn bad(&self) -> usize {
+    pub(crate) fn bad(&self) -> usize {
         self.nan + self.infinite + self.negative
     }
 
     /// Whether no error exceeds `limit` and no result is bad.
-    pub fn holds(&self, limit: f64) -> bool {
+    pub(crate) fn holds(&self, limit: f64) -> bool {
         self.worst() <= limit && self.bad() == 0
     }
 }
 
 /// What was found in one extreme case.
 #[derive(Clone, Debug)]
-pub struct Finding {
+pub(crate) struct Finding {
     /// Ours.
     pub ours: Tally,
     /// The textbook's in f32, where there is such a thing.
@@ -70,7 +70,7 @@ pub struct Finding {
 
 impl Finding {
     /// Whether ours is right.
-    pub fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.ours.count() > 0 && self.ours.holds(self.limit)
     }
 }

@@ -8,7 +8,7 @@ use std::array;
 /// Solid angle of a triangle, signed as ours, by the triple product of its corners over the printed denominator.
 ///
 /// Source: Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.
-pub fn solid_angle([a, b, c]: [Vec3; 3]) -> f32 {
+pub(crate) fn solid_angle([a, b, c]: [Vec3; 3]) -> f32 {
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let numerator = a.dot(b.cross(c));
     let denominator = la * lb * lc + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la;
@@ -18,7 +18,7 @@ pub fn solid_angle([a, b, c]: [Vec3; 3]) -> f32 {
 /// Irradiance of a triangle of unit radiance, clipped at the horizon: half the sum of arc cosines times edge normals.
 ///
 /// Source: Lambert, Photometria, 1760; Baum, Rushmeier and Winget, SIGGRAPH 1989, eq. 13.
-pub fn irradiance(corners: [Vec3; 3], normal: Vec3) -> f32 {
+pub(crate) fn irradiance(corners: [Vec3; 3], normal: Vec3) -> f32 {
     let above: Vec<Vec3> = (0..3)
         .flat_map(|i| {
             let (from, to) = (corners[i], corners[(i + 1) % 3]);

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 /// A triangle seen from the origin, all exact in f32.
 #[derive(Clone, Copy, Debug)]
-pub struct Posed {
+pub(crate) struct Posed {
     /// The triangle.
     pub corners: [Vec3; 3],
     /// The receiver's normal, of unit length but for rounding.
@@ -15,21 +15,21 @@ pub struct Posed {
 
 impl Posed {
     /// The triangle in f64.
-    pub fn seen(&self) -> Seen {
+    pub(crate) fn seen(&self) -> Seen {
         Seen::new(self.corners.map(Vec3::as_dvec3))
     }
 
     /// The corners' coordinates in f64.
-    pub fn coordinates(&self) -> [[f64; 3]; 3] {
+    pub(crate) fn coordinates(&self) -> [[f64; 3]; 3] {
         self.corners.map(|corner| corner.as_dvec3().to_array())
     }
 }
 
 /// A way to draw one.
-pub type Draw = fn(&mut Stream) -> Posed;
+pub(crate) type Draw = fn(&mut Stream) -> Posed;
 
 /// All of them by name.
-pub const FAMILIES: [(&str, Draw); 11] = [
+pub(crate) const FAMILIES: [(&str, Draw); 11] = [
     ("ordinary", ordinary),
     ("distant", distant),
     ("sliver", sliver),
@@ -75,20 +75,20 @@ fn three(stream: &mut Stream, size: f64) -> [DVec3; 3] {
 }
 
 /// About the receiver, of any solid angle.
-pub fn ordinary(stream: &mut Stream) -> Posed {
+pub(crate) fn ordinary(stream: &mut Stream) -> Posed {
     let corners = three(stream, 5.0);
     posed(stream, corners)
 }
 
 /// A metre large at 100 m to 100 km: down to 1e-10 sr.
-pub fn distant(stream: &mut Stream) -> Posed {
+pub(crate) fn distant(stream: &mut Stream) -> Posed {
     let centre = direction(stream) * magnitude(stream, 2.0, 5.0);
     let corners = three(stream, 1.5).map(|corner| centre + corner);
     posed(stream, corners)
 }
 
 /// A thousand to ten million times as long as wide.
-pub fn sliver(stream: &mut Stream) -> Posed {
+pub(crate) fn sliver(stream: &mut Stream) -> Posed {
     let [a, b, c] = three(stream, 3.0);
     let centre = direction(stream) * magnitude(stream, 0.0, 1.5);
     let width = magnitude(stream, -6.5, -3.0);
@@ -97,33 +97,33 @@ pub fn sliver(stream: &mut Stream) -> Posed {
 }
 
 /// A corner at the receiver, but for 0.1 mm and far less.
-pub fn vertex(stream: &mut Stream) -> Posed {
+pub(crate) fn vertex(stream: &mut Stream) -> Posed {
     let [a, b, c] = three(stream, 3.0);
     let corners = [a * magnitude(stream, -12.0, -4.0), b, c];
     posed(stream, corners)
 }
 
 /// An ordinary one shrunk to the size of atoms and less.
-pub fn micro(stream: &mut Stream) -> Posed {
+pub(crate) fn micro(stream: &mut Stream) -> Posed {
     let size = magnitude(stream, -16.0, -9.0);
     let corners = three(stream, size);
     posed(stream, corners)
 }
 
 /// An ordinary one as large as the solar system.
-pub fn huge(stream: &mut Stream) -> Posed {
+pub(crate) fn huge(stream: &mut Stream) -> Posed {
     let size = magnitude(stream, 8.0, 12.0);
     let corners = three(stream, size);
     posed(stream, corners)
 }
 
 /// The receiver next to the inside of the triangle: nearly half the sphere.
-pub fn touching(stream: &mut Stream) -> Posed {
+pub(crate) fn touching(stream: &mut Stream) -> Posed {
     beside(stream, -6.0, -1.0)
 }
 
 /// The receiver in the plane of the triangle but for rounding, inside or beside it.
-pub fn grazing(stream: &mut Stream) -> Posed {
+pub(crate) fn grazing(stream: &mut Stream) -> Posed {
     beside(stream, -12.0, -6.0)
 }
 
@@ -138,7 +138,7 @@ fn beside(stream: &mut Stream, low: f64, high: f64) -> Posed {
 }
 
 /// The receiver next to an edge, or on it but for rounding.
-pub fn edge(stream: &mut Stream) -> Posed {
+pub(crate) fn edge(stream: &mut Stream) -> Posed {
     let [a, b, c] = three(stream, 4.0);
     let near = a + (b - a) * stream.uniform64() + direction(stream) * magnitude(stream, -12.0, -2.0);
     let corners = [a, b, c].map(|corner| corner - near);
@@ -146,14 +146,14 @@ pub fn edge(stream: &mut Stream) -> Posed {
 }
 
 /// Three corners on a line, but for rounding to f32.
-pub fn degenerate(stream: &mut Stream) -> Posed {
+pub(crate) fn degenerate(stream: &mut Stream) -> Posed {
     let [a, b, _] = three(stream, 3.0);
     let corners = [a, b, a + (b - a) * (3.0 * stream.uniform64())];
     posed(stream, corners)
 }
 
 /// Two corners that are one.
-pub fn repeated(stream: &mut Stream) -> Posed {
+pub(crate) fn repeated(stream: &mut Stream) -> Posed {
     let [a, b, _] = three(stream, 3.0);
     let corners = [[a, a, b], [a, b, a], [b, a, a], [a, a, a]][stream.below(4)];
     posed(stream, corners)

@@ -15,28 +15,28 @@ use std::path::Path;
 
 /// What each column of a file is: corners in f32, a unit normal, signed solid angle in sr (positive when `a·(b×c) > 0`), irradiance
 /// for unit radiance clipped at the horizon.
-pub const COLUMNS: [&str; 15] =
+pub(crate) const COLUMNS: [&str; 15] =
     ["category", "ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz", "nx", "ny", "nz", "solid_angle", "irradiance"];
 
 /// The categories; those of [`AREALESS`] are judged by their absolute error.
-pub const CATEGORIES: [&str; 10] =
+pub(crate) const CATEGORIES: [&str; 10] =
     ["ordinary", "distant", "sliver", "vertex", "micro", "huge", "touching", "grazing", "degenerate", "repeated"];
 
 /// Triangles of no area, or next to none.
-pub const AREALESS: [&str; 2] = ["degenerate", "repeated"];
+pub(crate) const AREALESS: [&str; 2] = ["degenerate", "repeated"];
 
 /// Worst relative error of a solid angle that is right.
-pub const SOLID_ANGLE_LIMIT: f64 = 2e-6;
+pub(crate) const SOLID_ANGLE_LIMIT: f64 = 2e-6;
 /// Worst error in sr of a solid angle that is right, of a triangle of no area.
-pub const AREALESS_LIMIT: f64 = 1e-12;
+pub(crate) const AREALESS_LIMIT: f64 = 1e-12;
 /// Worst error of an irradiance that is right, relative to it or to [`IRRADIANCE_FLOOR`], whichever is more.
-pub const IRRADIANCE_LIMIT: f64 = 1e-5;
+pub(crate) const IRRADIANCE_LIMIT: f64 = 1e-5;
 /// A ten-millionth of what a whole sky of unit radiance gives.
-pub const IRRADIANCE_FLOOR: f64 = 1e-7 * PI;
+pub(crate) const IRRADIANCE_FLOOR: f64 = 1e-7 * PI;
 
 /// A row of a file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Vector {
+pub(crate) struct Vector {
     /// One of [`CATEGORIES`].
     pub category: &'static str,
     /// The triangle.
@@ -51,7 +51,7 @@ pub struct Vector {
 
 /// What was found of one category.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub(crate) struct Judged {
     /// The category.
     pub category: &'static str,
     /// Relative error of the solid angle; in sr for triangles of no area.
@@ -62,7 +62,7 @@ pub struct Judged {
 
 impl Judged {
     /// Whether both are right.
-    pub fn passed(&self) -> bool {
+    pub(crate) fn passed(&self) -> bool {
         self.solid_angle.passed() && self.irradiance.passed()
     }
 }
@@ -71,7 +71,7 @@ impl Judged {
 ///
 /// # Errors
 /// A file that cannot be read; as [`parse`].
-pub fn read(file: &Path) -> Result<Vec<Vector>> {
+pub(crate) fn read(file: &Path) -> Result<Vec<Vector>> {
     parse(&fs::read(file).map_err(Error::io("read", file))?, file)
 }
 
@@ -79,7 +79,7 @@ pub fn read(file: &Path) -> Result<Vec<Vector>> {
 ///
 /// # Errors
 /// A header or a row that cannot be used, with its line and column; a file without rows.
-pub fn parse(text: &[u8], file: &Path) -> Result<Vec<Vector>> {
+pub(crate) fn parse(text: &[u8], file: &Path) -> Result<Vec<Vector>> {
     // Fields hold no commas and no line ends, so lines are rows: a line's number is then what an editor shows.
     let mut vectors = Vec::new();
     let wrong = |line: usize, at: usize, message: &str| Error::Input {
@@ -166,7 +166,7 @@ impl Vector {
 }
 
 /// Judges rows by category, in the order of [`CATEGORIES`]; those without a row are left out.
-pub fn judge(vectors: &[Vector]) -> Vec<Judged> {
+pub(crate) fn judge(vectors: &[Vector]) -> Vec<Judged> {
     let one = |category| {
         let rows: Vec<&Vector> = vectors.iter().filter(|vector| vector.category == category).collect();
         (!rows.is_empty()).then(|| judge_category(category, &rows))

@@ -7,7 +7,7 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// Takes every light in every pass, one point each: exact after one pass where lights have no extent.
-pub struct All;
+pub(super) struct All;
 
 impl Strategy for All {
     const INFO: Info = Info {
@@ -32,7 +32,7 @@ impl Strategy for All {
 /// The lights to take, in table order, and whether each has an extent. Sums come out the same to the last bit whether
 /// or not useless lights were left out: the order is kept, and a light's points depend on nothing but the light and the
 /// pass.
-pub struct Lights(Vec<(LightId, bool)>);
+pub(super) struct Lights(Vec<(LightId, bool)>);
 
 impl LightSampler for Lights {
     type Scratch = ();

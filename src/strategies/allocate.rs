@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// `rays` points on triangles a receiver and pass, on average over the image.
-pub struct Allocate {
+pub(crate) struct Allocate {
     rays: f32,
 }
 
@@ -74,7 +74,7 @@ fn whole(points: f64) -> f64 {
 }
 
 /// [`Allocate`] for a scene.
-pub struct Sampler {
+pub(crate) struct Sampler {
     scene: Arc<Scene>,
     triangles: Vec<LightId>,
     others: Vec<LightId>,
@@ -85,7 +85,7 @@ pub struct Sampler {
 
 impl Sampler {
     /// A sampler that gives `rays` points to a receiver by the heuristic, on average over `receivers`.
-    pub fn new(stage: &Stage, receivers: &[Receiver], rays: f64) -> Self {
+    pub(crate) fn new(stage: &Stage, receivers: &[Receiver], rays: f64) -> Self {
         let mut sampler = Self::with(stage, Weights::Heuristic);
         let weights: Vec<Vec<f64>> = receivers.par_iter().map(|at| sampler.weights(at).collect()).collect();
         let total = |scale: f64| weights.iter().flatten().map(|weight| whole(weight * scale)).sum::<f64>();
@@ -101,7 +101,7 @@ impl Sampler {
     }
 
     /// A sampler that gives numbers of points that are known already: by pixel, one for each triangle in the stage's order.
-    pub fn by_table(stage: &Stage, points: HashMap<u32, Vec<f32>>) -> Self {
+    pub(crate) fn by_table(stage: &Stage, points: HashMap<u32, Vec<f32>>) -> Self {
         Self::with(stage, Weights::Table(points))
     }
 

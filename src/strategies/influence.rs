@@ -12,7 +12,7 @@ use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks,
 use crate::visibility::influence_tree::InfluenceTree;
 
 /// Takes every light in range, one point each.
-pub struct Influence {
+pub(super) struct Influence {
     range: Range,
 }
 
@@ -35,7 +35,7 @@ impl Strategy for Influence {
 }
 
 /// [`Influence`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     tree: InfluenceTree,
 }
 

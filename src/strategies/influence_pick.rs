@@ -8,7 +8,7 @@ use crate::base::error::Result;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, Strategy};
 
 /// `picks` independent draws among the lights in range, by what arrives from each.
-pub struct InfluencePick {
+pub(super) struct InfluencePick {
     range: Range,
     picks: u32,
 }

@@ -22,7 +22,7 @@ use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks,
 use std::sync::Arc;
 
 /// `picks` weighted draws in range and `tail` draws by influence radius out of it.
-pub struct InfluenceTail {
+pub(super) struct InfluenceTail {
     range: Range,
     picks: u32,
     tail: u32,
@@ -55,7 +55,7 @@ impl Strategy for InfluenceTail {
 }
 
 /// [`InfluenceTail`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     scene: Arc<Scene>,
     near: InRange,
     far: LightTable,

@@ -14,7 +14,7 @@ use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks,
 use std::sync::Arc;
 
 /// `picks` independent draws, each light with a probability in proportion to its unshadowed irradiance.
-pub struct Intensity {
+pub(super) struct Intensity {
     picks: u32,
 }
 
@@ -38,7 +38,7 @@ impl Strategy for Intensity {
 }
 
 /// [`Intensity`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     scene: Arc<Scene>,
     lights: Vec<LightId>,
     picks: u32,

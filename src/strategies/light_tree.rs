@@ -16,7 +16,7 @@ use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, Strategy
 use crate::tree::{Distance, Facing, How, Weighing};
 
 /// `picks` walks down a tree.
-pub struct LightTree {
+pub(super) struct LightTree {
     arity: usize,
     how: How,
     walks: Walks,

@@ -26,7 +26,7 @@ use std::collections::BinaryHeap;
 use std::f32::consts::FRAC_1_PI;
 
 /// The representatives of a cut through the tree.
-pub struct Lightcuts {
+pub(super) struct Lightcuts {
     error: f32,
     cut: u32,
 }
@@ -94,7 +94,7 @@ fn representatives(tree: &Tree<2>, peaks: &[f32], seed: u64) -> Vec<LightId> {
 }
 
 /// [`Lightcuts`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     tree: Tree<2>,
     /// A light for each node.
     representatives: Vec<LightId>,
@@ -108,7 +108,7 @@ pub struct Sampler {
 
 /// A cluster of a cut.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub(super) struct Part {
     /// The most that it can add; 0 of a light alone, which is worth what it adds.
     bound: f32,
     /// What its representative says that it adds.

@@ -3,24 +3,24 @@
 //! None knows another but through the [contract](crate::strategy); what several are made of lies in [`parts`]. Adding one
 //! takes a file here and a line in [`Registry::standard`].
 
-pub mod all;
-pub mod allocate;
-pub mod influence;
-pub mod influence_pick;
-pub mod influence_tail;
-pub mod intensity;
-pub mod light_tree;
-pub mod lightcuts;
-pub mod null;
-pub mod oracle;
+mod all;
+pub(crate) mod allocate;
+mod influence;
+mod influence_pick;
+mod influence_tail;
+mod intensity;
+mod light_tree;
+mod lightcuts;
+mod null;
+mod oracle;
 pub mod parts;
-pub mod power;
-pub mod resampled;
-pub mod restir;
-pub mod stochastic_cull;
-pub mod stochastic_lightcuts;
-pub mod uniform;
-pub mod visible;
+mod power;
+mod resampled;
+mod restir;
+pub(crate) mod stochastic_cull;
+mod stochastic_lightcuts;
+mod uniform;
+mod visible;
 
 use crate::strategy::Registry;
 

@@ -6,7 +6,7 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// Picks no light.
-pub struct Null;
+pub(super) struct Null;
 
 impl Strategy for Null {
     const INFO: Info = Info {

@@ -24,7 +24,7 @@ const POINTS: f64 = 9.0;
 const LEAST_SIDE: u32 = 2;
 
 /// One light, with a probability in proportion to what it adds, shadows included.
-pub struct Oracle {
+pub(super) struct Oracle {
     mix: f32,
 }
 
@@ -50,7 +50,7 @@ impl Strategy for Oracle {
 }
 
 /// [`Oracle`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     target: TargetFunction,
     lights: Vec<LightId>,
     mix: f32,
@@ -58,7 +58,7 @@ pub struct Sampler {
 
 /// The weights of all lights at a receiver.
 #[derive(Default)]
-pub struct Weighed {
+pub(super) struct Weighed {
     seen: Vec<f32>,
     open: Vec<f32>,
     sums: Cumulative,

@@ -12,7 +12,7 @@ use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks,
 ///
 /// By flux alone a dim lamp next to the receiver is drawn once in a million passes where a stadium stands far away;
 /// `mix` of the probability is shared out evenly instead (defensive mixing: Hesterberg, Technometrics 37(2), 1995).
-pub struct Power {
+pub(super) struct Power {
     picks: u32,
     mix: f32,
 }
@@ -48,7 +48,7 @@ impl Strategy for Power {
 }
 
 /// [`Power`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     lights: LightTable,
     picks: u32,
 }

@@ -11,7 +11,7 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Pick, Picks, Strategy, Tally};
 
 /// `picks` lights chosen among the candidates of `m` calls.
-pub struct Resampled {
+pub(super) struct Resampled {
     recipe: Recipe,
     value: Value,
     picks: u32,
@@ -48,7 +48,7 @@ impl Strategy for Resampled {
 }
 
 /// [`Resampled`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     candidates: Candidates,
     value: Value,
     picks: u32,
@@ -56,7 +56,7 @@ pub struct Sampler {
 
 /// One worker's storage.
 #[derive(Default)]
-pub struct Scratch(Pool);
+pub(super) struct Scratch(Pool);
 
 impl LightSampler for Sampler {
     type Scratch = Scratch;

@@ -46,7 +46,7 @@ const LEAST_COSINE: f32 = 0.906_308;
 const MOST_DEPTH: f32 = 0.1;
 
 /// One light a pass, from the candidates of a receiver and its neighbours.
-pub struct Restir {
+pub(super) struct Restir {
     recipe: Recipe,
     neighbours: u32,
     radius: f32,
@@ -108,7 +108,7 @@ impl Strategy for Restir {
 }
 
 /// [`Restir`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     candidates: Candidates,
     neighbours: u32,
     radius: f32,
@@ -150,7 +150,7 @@ const NOBODY: u32 = u32::MAX;
 type Chosen = Option<(Pick, f32)>;
 
 /// One pass over a frame.
-pub struct Pass<'a> {
+pub(super) struct Pass<'a> {
     sampler: &'a Sampler,
     frame: Frame<'a>,
     pass: u32,
@@ -162,7 +162,7 @@ pub struct Pass<'a> {
 
 /// One worker's storage.
 #[derive(Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     pool: Pool,
     neighbours: Vec<u32>,
 }

@@ -16,7 +16,7 @@ use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks,
 use crate::tree::{Cut, Distance, How, Memory, Tree};
 
 /// One pick from each of `cut` clusters.
-pub struct StochasticLightcuts {
+pub(super) struct StochasticLightcuts {
     cut: u32,
 }
 
@@ -40,14 +40,14 @@ impl Strategy for StochasticLightcuts {
 }
 
 /// [`StochasticLightcuts`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     tree: Tree<2>,
     cut: u32,
 }
 
 /// What a worker keeps.
 #[derive(Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     memory: Memory<2>,
     cut: Cut,
 }

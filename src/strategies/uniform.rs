@@ -8,7 +8,7 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
 /// `picks` independent draws, each light with probability 1/N.
-pub struct Uniform {
+pub(super) struct Uniform {
     picks: u32,
 }
 
@@ -32,7 +32,7 @@ impl Strategy for Uniform {
 }
 
 /// [`Uniform`] for a scene.
-pub struct Sampler {
+pub(super) struct Sampler {
     lights: Vec<LightId>,
     picks: u32,
     weight: f32,

@@ -10,7 +10,7 @@ use crate::record::study::Study;
 
 /// A study that can be named.
 #[derive(Clone, Copy)]
-pub struct Entry {
+pub(crate) struct Entry {
     /// Its name, as typed.
     pub name: &'static str,
     /// What it asks.
@@ -28,7 +28,7 @@ impl Entry {
     /// # Errors
     /// A misspelt name; a recipe with a mistake, or that the study can measure nothing on; an error of `folder`;
     /// another study in it; a file that cannot be read or written; the user's wish to stop.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         options: &StudyOptions,
         command: String,

@@ -6,7 +6,7 @@ use crate::record::Interval;
 
 /// `y = factor * x^exponent`, fitted to points by least squares of the logarithms.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PowerLaw {
+pub(crate) struct PowerLaw {
     /// The slope on logarithmic axes, with Student's interval from how the points scatter.
     pub exponent: Interval,
     /// What stands before the power.
@@ -20,7 +20,7 @@ pub struct PowerLaw {
 impl PowerLaw {
     /// The law of some points; those that are not finite and above 0 are left out. `None` for fewer than three or for
     /// one x alone: two points lie on a line whatever they are.
-    pub fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+    pub(crate) fn fit(points: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
         let positive = |v: f64| v.is_finite() && v > 0.0;
         let logs: Vec<(f64, f64)> =
             points.into_iter().filter(|&(x, y)| positive(x) && positive(y)).map(|(x, y)| (x.ln(), y.ln())).collect();

@@ -6,14 +6,14 @@ use crate::base::error::{Error, Result};
 use crate::base::names;
 
 /// Every study, in the order of `citylights list studies`.
-pub const STUDIES: [Entry; 6] =
+pub(crate) const STUDIES: [Entry; 6] =
     [strategies::ENTRY, visible::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
 
 /// The study of that name.
 ///
 /// # Errors
 /// An unknown name, with those that come near it.
-pub fn find(name: &str) -> Result<Entry> {
+pub(crate) fn find(name: &str) -> Result<Entry> {
     let unknown = || Error::Unknown {
         what: "study",
         name: name.to_owned(),

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// What a user may change; each study reads what makes sense for it.
 #[derive(Clone)]
-pub struct StudyOptions {
+pub(crate) struct StudyOptions {
     /// The strategies that can be named.
     pub registry: Registry,
     /// The program that runs, where it is not this crate's own.

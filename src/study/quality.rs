@@ -24,7 +24,7 @@ use crate::visibility::stage::Stage;
 
 /// What a sampler is worth at a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quality {
+pub(crate) struct Quality {
     /// Relative variance brought to one pick; infinite where a light that contributes is never picked.
     pub variance: f64,
     /// Expected picks a call.
@@ -32,14 +32,14 @@ pub struct Quality {
 }
 
 /// Unshadowed contribution of a light at its centroid, as a luminance in cd/m^2.
-pub fn unshadowed(light: &Light, at: &Receiver) -> f64 {
+pub(crate) fn unshadowed(light: &Light, at: &Receiver) -> f64 {
     contribution::<0b1111>(LightSampling::Area, light, CENTROID, at)
         .map_or(0.0, |arrival| f64::from(luminance(arrival.radiance)))
 }
 
 /// What can be said of a sampler at a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
+pub(crate) enum Finding {
     /// No light contributes: nothing is to be chosen.
     Dark,
     /// The sampler cannot tell its expected counts.
@@ -49,7 +49,7 @@ pub enum Finding {
 }
 
 /// The quality of a sampler at a receiver; `counts` is scratch.
-pub fn quality(stage: &Stage, sampler: &dyn AnySampler, at: &Receiver, counts: &mut Vec<f32>) -> Finding {
+pub(crate) fn quality(stage: &Stage, sampler: &dyn AnySampler, at: &Receiver, counts: &mut Vec<f32>) -> Finding {
     let lights = stage.scene().lights();
     let contributions = || lights.iter().map(|light| unshadowed(light, at));
     let total: f64 = contributions().sum();

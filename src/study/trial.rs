@@ -20,7 +20,7 @@ use crate::strategy::Configured;
 
 /// What strategies are tried on, and how.
 #[derive(Clone, Copy)]
-pub struct Trial<'a> {
+pub(crate) struct Trial<'a> {
     /// Who times it.
     pub engine: &'a Engine<'a>,
     /// The frame, and where errors are taken.
@@ -37,7 +37,7 @@ pub struct Trial<'a> {
 
 /// The budgets of a strategy: numbers of passes of 1, 4, 16 and so on.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Budgets {
+pub(crate) enum Budgets {
     /// The largest that it can afford.
     Largest,
     /// All up to that.
@@ -45,7 +45,7 @@ pub enum Budgets {
 }
 
 /// What the runs of a strategy gave.
-pub struct Tried {
+pub(crate) struct Tried {
     /// All of them together.
     pub summary: Summary,
     runs: Runs,
@@ -59,7 +59,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// The user's wish to stop; no thread to run on.
-    pub fn run(&self, strategies: &[&Configured], budgets: Budgets, watch: &dyn Observer) -> Result<Vec<Tried>> {
+    pub(crate) fn run(&self, strategies: &[&Configured], budgets: Budgets, watch: &dyn Observer) -> Result<Vec<Tried>> {
         let mut tried = self.those(false, strategies, budgets, watch)?;
         if strategies.iter().any(|strategy| is_oracle(strategy)) {
             let some: Vec<usize> = places(self.target.places.len(), RECEIVERS).collect();
@@ -136,7 +136,7 @@ impl Tried {
     }
 
     /// Its runs at a number of passes; empty where there are none.
-    pub fn at(&self, passes: u32) -> Vec<&Row> {
+    pub(crate) fn at(&self, passes: u32) -> Vec<&Row> {
         self.runs.at(passes)
     }
 

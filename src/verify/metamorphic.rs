@@ -35,7 +35,7 @@ const VALID: &str = "changed-valid";
 const COUNTS: &str = "scaled-counts";
 
 /// How many checks of level 2 a right strategy may fail by chance: one for each of `CHANGES`.
-pub const CHANCES: usize = CHANGES.len();
+pub(crate) const CHANCES: usize = CHANGES.len();
 
 /// What is done to a scene, and how far apart the images may be, as a share of the mean.
 ///
@@ -78,10 +78,10 @@ enum Change {
 
 /// Enough pixels of a film for checks: a view is built anew for every change, and a frame-wide sampler looks at all of
 /// it in every pass.
-pub const PIXELS: u32 = 64 * 36;
+pub(crate) const PIXELS: u32 = 64 * 36;
 
 /// A scene and its changed copies, made ready.
-pub struct Copies {
+pub(crate) struct Copies {
     whole: Stage,
     changed: Vec<Stage>,
 }
@@ -92,7 +92,7 @@ impl Copies {
     ///
     /// # Errors
     /// A copy that is no scene: one so large, so bright or so small that its numbers have no place in an f32.
-    pub fn new(scene: &Scene, offset: Offset, by: LightSampling) -> Result<Self> {
+    pub(crate) fn new(scene: &Scene, offset: Offset, by: LightSampling) -> Result<Self> {
         let mut parts = Parts { groups: Vec::new(), ..scene.parts() };
         parts.camera = parts.camera.shrunk(PIXELS);
         let ready = |parts: Parts| Ok(Stage::new(Scene::new(parts)?, LeaveOut::No, offset).with_light_sampling(by));
@@ -103,14 +103,14 @@ impl Copies {
 }
 
 /// A scene and its changed copies, with what is true there: checks any number of strategies, on any threads.
-pub struct Metamorphic<'a> {
+pub(crate) struct Metamorphic<'a> {
     whole: Verifier<'a>,
     changed: Vec<Verifier<'a>>,
 }
 
 impl<'a> Metamorphic<'a> {
     /// Finds the truth at a few receivers of each copy.
-    pub fn new(copies: &'a Copies, options: VerifyOptions) -> Self {
+    pub(crate) fn new(copies: &'a Copies, options: VerifyOptions) -> Self {
         let whole = Verifier::new(&copies.whole, options);
         let scale = copies.whole.scene().radius();
         let changed = CHANGES.iter().zip(&copies.changed).map(|((_, change, _), stage)| {
@@ -128,7 +128,7 @@ impl<'a> Metamorphic<'a> {
     }
 
     /// Checks the truth itself: the image of each copy is that of the scene.
-    pub fn image(&self) -> Vec<Check> {
+    pub(crate) fn image(&self) -> Vec<Check> {
         let sum = |verifier: &Verifier<'_>, pixels: &[u32]| {
             let kept = verifier.receivers.iter().zip(&verifier.truths).filter(|(at, _)| pixels.contains(&at.pixel));
             kept.map(|(_, truth)| truth.sum(|_| true))
@@ -152,7 +152,7 @@ impl<'a> Metamorphic<'a> {
     ///
     /// # Errors
     /// A strategy that cannot serve the scene, or a copy of it.
-    pub fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
+    pub(crate) fn verify(&self, strategy: &Configured) -> Result<Vec<Check>> {
         let seed = self.whole.options.seed;
         let build = |verifier: &Verifier<'_>| strategy.build(BuildContext { stage: verifier.stage, seed });
         let base = build(&self.whole)?;

@@ -11,7 +11,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 /// The lights that can touch at least one receiver, in table order.
-pub fn reaching(scene: &Scene, receivers: &[Receiver]) -> Vec<LightId> {
+pub(crate) fn reaching(scene: &Scene, receivers: &[Receiver]) -> Vec<LightId> {
     let groups: Vec<Group> = receivers.chunks(GROUP).flat_map(Group::by_normal).collect();
     let ids: Vec<LightId> = (0..scene.lights().len() as LightId).collect();
     ids.into_par_iter()

@@ -16,7 +16,7 @@ use glam::Vec3;
 use obvhs::bvh2::Bvh2;
 
 /// Lights that survive with the probability that they reach a point.
-pub struct Roulette {
+pub(crate) struct Roulette {
     bvh: Bvh2,
     /// In the hierarchy's order, with the lights they belong to.
     volumes: Vec<(Influence, LightId)>,
@@ -27,11 +27,11 @@ pub struct Roulette {
 
 /// Nodes to be visited, each with the bound it was entered with.
 #[derive(Default)]
-pub struct Stack(Vec<(u32, f32)>);
+pub(crate) struct Stack(Vec<(u32, f32)>);
 
 impl Roulette {
     /// Builds the hierarchy over some lights of a scene.
-    pub fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
+    pub(crate) fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
         let (volumes, everywhere) = cutoff.volumes(scene, lights);
         let bvh = bvh::build(volumes.iter().map(|(volume, _)| (volume.centre, volume.centre)), Asked::Points);
         let volumes: Vec<_> = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
@@ -50,7 +50,7 @@ impl Roulette {
 
     /// Shows each light that survives at `point` to `see`, with the probability that it does; gives the nodes visited.
     #[inline]
-    pub fn survivors(
+    pub(crate) fn survivors(
         &self,
         point: Vec3,
         rng: &mut Stream,
@@ -92,13 +92,13 @@ impl Roulette {
     }
 
     /// Each light with the probability that it survives at `point`.
-    pub fn chances(&self, point: Vec3) -> impl Iterator<Item = (LightId, f32)> {
+    pub(crate) fn chances(&self, point: Vec3) -> impl Iterator<Item = (LightId, f32)> {
         let local = self.volumes.iter().map(move |(volume, id)| (*id, chance(volume, point)));
         self.everywhere.iter().map(|id| (*id, 1.0)).chain(local)
     }
 
     /// Bytes on the heap.
-    pub fn heap_bytes(&self) -> usize {
+    pub(crate) fn heap_bytes(&self) -> usize {
         size_of_val(&self.bvh.nodes[..])
             + size_of_val(&self.bvh.primitive_indices[..])
             + size_of_val(&self.volumes[..])
@@ -132,7 +132,7 @@ fn from_the_root(bvh: &Bvh2) -> Vec<usize> {
 
 /// The probability that a light's random range reaches a point; 0 on its dark side.
 #[inline]
-pub fn chance(volume: &Influence, point: Vec3) -> f32 {
+pub(crate) fn chance(volume: &Influence, point: Vec3) -> f32 {
     let to_point = point - volume.centre;
     if volume.axis.dot(to_point) < 0.0 { 0.0 } else { reached(volume.radius2, to_point.abs()) }
 }

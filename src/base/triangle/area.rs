@@ -4,7 +4,7 @@
 ///
 /// Source: the lecture's map, `1 - sqrt(u)` for the first corner (Turk, Graphics Gems, 1990).
 #[inline]
-pub fn uniform_point(u: [f32; 2]) -> [f32; 2] {
+pub(crate) fn uniform_point(u: [f32; 2]) -> [f32; 2] {
     let root = u[0].sqrt();
     [root * (1.0 - u[1]), root * u[1]]
 }
@@ -19,14 +19,14 @@ pub fn uniform_point(u: [f32; 2]) -> [f32; 2] {
 ///
 /// Source: Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 #[inline]
-pub fn low_distortion_point(u: [f32; 2]) -> [f32; 2] {
+pub(crate) fn low_distortion_point(u: [f32; 2]) -> [f32; 2] {
     // The smaller number halves and takes as much from the larger: a shear of either half of the square.
     let half = 0.5 * u[0].min(u[1]);
     if u[1] > u[0] { [half, u[1] - half] } else { [u[0] - half, half] }
 }
 
 /// What [`uniform_point`] takes to the centroid.
-pub const CENTROID: [f32; 2] = [4.0 / 9.0, 0.5];
+pub(crate) const CENTROID: [f32; 2] = [4.0 / 9.0, 0.5];
 
 #[cfg(test)]
 mod tests {

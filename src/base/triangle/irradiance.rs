@@ -41,7 +41,7 @@ impl Seen {
     ///
     /// Source: Lambert, Photometria, 1760; Baum, Rushmeier and Winget, SIGGRAPH 1989, eq. 13.
     #[inline]
-    pub fn irradiance(&self, normal: DVec3) -> f64 {
+    pub(crate) fn irradiance(&self, normal: DVec3) -> f64 {
         if self.corners.iter().all(|corner| normal.dot(*corner) >= 0.0) {
             return self.whole(normal).abs();
         }

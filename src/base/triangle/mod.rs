@@ -18,8 +18,8 @@ mod projected;
 mod seen;
 mod solid_angle;
 
-pub use area::{CENTROID, low_distortion_point, uniform_point};
-pub use nearest::nearest_squared;
-pub use projected::Projected;
-pub use seen::Seen;
-pub use solid_angle::SolidAngle;
+pub(crate) use area::{CENTROID, uniform_point};
+pub(crate) use nearest::nearest_squared;
+pub(crate) use projected::Projected;
+pub(crate) use seen::Seen;
+pub(crate) use solid_angle::SolidAngle;

@@ -8,7 +8,7 @@ use glam::Vec3;
 ///
 /// Source: by the regions of the plane about a triangle, Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 #[inline]
-pub fn nearest_squared(corner: Vec3, a: Vec3, b: Vec3) -> f32 {
+pub(crate) fn nearest_squared(corner: Vec3, a: Vec3, b: Vec3) -> f32 {
     let to_edge = |from: Vec3, edge: Vec3| {
         let along = (-from.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
         // An edge without length is its corner.

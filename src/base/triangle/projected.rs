@@ -16,7 +16,7 @@ use glam::DVec3;
 /// Source: the two steps: Arvo, SIGGRAPH 2001 course 29, "Stratified sampling of spherical triangles"; the density:
 /// Lambert, 1760.
 #[derive(Clone, Copy, Debug)]
-pub struct Projected {
+pub(crate) struct Projected {
     parts: [Piece; 2],
     count: usize,
     irradiance: f64,
@@ -39,7 +39,7 @@ const STEPS: usize = 120;
 
 impl Projected {
     /// A sampler for a receiver's unit normal; `None` where no light arrives.
-    pub fn new(seen: &Seen, normal: DVec3) -> Option<Self> {
+    pub(crate) fn new(seen: &Seen, normal: DVec3) -> Option<Self> {
         let (parts, count) = seen.above(normal);
         let piece = |part: &Part| {
             let irradiance = part.seen.whole(normal).abs();
@@ -61,12 +61,12 @@ impl Projected {
     /// The irradiance for unit radiance, as [`Seen::irradiance`] gives it: the density per steradian is the cosine over
     /// it.
     #[inline]
-    pub fn irradiance(&self) -> f64 {
+    pub(crate) fn irradiance(&self) -> f64 {
         self.irradiance
     }
 
     /// Barycentric weights of the second and third corner of the point for `u` in `[0, 1)^2`.
-    pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
         let target = u[0] * self.irradiance;
         let [first, second] = &self.parts;
         if self.count == 1 || target < first.irradiance {

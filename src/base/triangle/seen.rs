@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// A triangle as a receiver sees it that is at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub(crate) struct Seen {
     pub(super) corners: [DVec3; 3],
     /// Distances of the corners.
     pub(super) lengths: [f64; 3],
@@ -16,7 +16,7 @@ impl Seen {
     /// A triangle from its corners relative to the receiver, each of its coordinates 0 or within about 1e-45 to 1e38 in
     /// magnitude, the range of f32.
     #[inline]
-    pub fn new(corners: [DVec3; 3]) -> Self {
+    pub(crate) fn new(corners: [DVec3; 3]) -> Self {
         Self { corners, lengths: corners.map(DVec3::length) }
     }
 
@@ -30,7 +30,7 @@ impl Seen {
     ///
     /// Source: Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.
     #[inline(always)]
-    pub fn solid_angle(&self) -> f64 {
+    pub(crate) fn solid_angle(&self) -> f64 {
         match self.tangent() {
             Some((triple, denominator)) => signed_angle(triple, denominator),
             // Of a copy: what is called for by reference is kept in memory on the other way as well, at 11 ns.
@@ -58,7 +58,7 @@ impl Seen {
 
     /// The point of barycentric weights `(b1, b2)` of the second and third corner, relative to the receiver.
     #[inline]
-    pub fn point(&self, [b1, b2]: [f64; 2]) -> DVec3 {
+    pub(crate) fn point(&self, [b1, b2]: [f64; 2]) -> DVec3 {
         let [a, b, c] = self.corners;
         a * (1.0 - b1 - b2) + b * b1 + c * b2
     }
@@ -66,7 +66,7 @@ impl Seen {
     /// Steradians for each unit of barycentric area `db1 db2` at a point: what turns a density per steradian into one
     /// over the barycentric weights. Infinite at a point that lies at the receiver.
     #[inline]
-    pub fn steradians_per_area(&self, at: [f64; 2]) -> f64 {
+    pub(crate) fn steradians_per_area(&self, at: [f64; 2]) -> f64 {
         // Twice the area times the distance of the plane, over the cubed distance of the point.
         let distance2 = self.point(at).length_squared();
         let (triple, _) = self.tangent().unwrap_or_else(|| tangent_of_more_digits(self.corners));

@@ -17,7 +17,7 @@ use glam::DVec3;
 /// Source: the idea of cutting a sub-triangle by solid angle, then an arc by height: Arvo, SIGGRAPH 1995. The form: derived
 /// here.
 #[derive(Clone, Copy, Debug)]
-pub struct SolidAngle {
+pub(crate) struct SolidAngle {
     seen: Seen,
     solid_angle: f64,
     /// `|a||c| + a·c`.
@@ -29,7 +29,7 @@ pub struct SolidAngle {
 impl SolidAngle {
     /// A sampler; `None` where the solid angle is 0.
     #[inline]
-    pub fn new(seen: &Seen) -> Option<Self> {
+    pub(crate) fn new(seen: &Seen) -> Option<Self> {
         let solid_angle = seen.solid_angle().abs();
         let [a, b, c] = seen.corners;
         let [la, lb, lc] = seen.lengths;
@@ -42,13 +42,13 @@ impl SolidAngle {
 
     /// The unsigned solid angle in steradians, as [`Seen::solid_angle`] gives it: one over the density.
     #[inline]
-    pub fn solid_angle(&self) -> f64 {
+    pub(crate) fn solid_angle(&self) -> f64 {
         self.solid_angle
     }
 
     /// Barycentric weights of the second and third corner of the point for `u` in `[0, 1)^2`.
     #[inline]
-    pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
         let share = self.share(u[0]);
         let [a, b, c] = self.seen.corners;
         let end = a + (c - a) * share;

@@ -4,5 +4,5 @@ mod channels;
 mod read;
 mod write;
 
-pub use read::read;
-pub use write::encode;
+pub(crate) use read::read;
+pub(crate) use write::encode;

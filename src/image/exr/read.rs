@@ -31,7 +31,7 @@ const MOST_BLOCK_BYTES: usize = 1 << 30;
 /// # Errors
 /// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged, larger than [`MOST_PIXELS`], deep or
 /// without one such picture is [`Error::Input`].
-pub fn read(path: &Path) -> Result<Picture> {
+pub(crate) fn read(path: &Path) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
     picture(BufReader::new(file)).map_err(|why| Error::Input {
         file: path.to_owned(),

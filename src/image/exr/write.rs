@@ -21,7 +21,7 @@ const REC_709: Chromaticities = Chromaticities {
 ///
 /// # Errors
 /// A picture without pixels, or with another number of them than its sides say.
-pub fn encode(picture: &Picture) -> Result<Vec<u8>> {
+pub(crate) fn encode(picture: &Picture) -> Result<Vec<u8>> {
     picture.check()?;
     let (width, height) = (picture.width as usize, picture.height as usize);
     let channels = SpecificChannels::rgb(|Vec2(x, y)| {

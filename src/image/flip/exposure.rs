@@ -25,7 +25,7 @@ const DARKEST: f64 = f32::EPSILON as f64;
 
 /// Exposures in stops (factors of two), evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exposures {
+pub(crate) struct Exposures {
     /// The first: the brightest pixel is just not burnt out.
     pub start: f64,
     /// The last: half of the picture is at least as bright as the brightest pixel was.
@@ -36,7 +36,7 @@ pub struct Exposures {
 
 impl Exposures {
     /// Those that show a picture, from the luminances of its pixels; negative components count as 0.
-    pub fn of(reference: impl Iterator<Item = Vec3>) -> Self {
+    pub(crate) fn of(reference: impl Iterator<Item = Vec3>) -> Self {
         let mut luminances: Vec<f32> = reference.map(|rgb| luminance(rgb.max(Vec3::ZERO))).collect();
         luminances.sort_by(f32::total_cmp);
         let shown = ACES.inverse(SHOWN);
@@ -56,7 +56,7 @@ impl Exposures {
 ///
 /// In any unit: the exposures, [`Exposures::of`] the reference, take it away. Negative components count as 0; NaN is
 /// not allowed.
-pub fn hdr(reference: &[Vec3], test: &[Vec3], width: usize, exposures: Exposures, pixels_per_degree: f64) -> Vec<f32> {
+pub(crate) fn hdr(reference: &[Vec3], test: &[Vec3], width: usize, exposures: Exposures, pixels_per_degree: f64) -> Vec<f32> {
     let mut largest = vec![0.0f32; reference.len()];
     for factor in exposures.factors() {
         let shown = |picture: &[Vec3]| picture.iter().map(|&rgb| ACES.apply(factor, rgb)).collect::<Vec<_>>();

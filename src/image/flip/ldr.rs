@@ -8,16 +8,16 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Pixels per degree of the papers' viewer: 0.7 m before a screen 0.7 m wide with 3,840 pixels.
-pub const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
+pub(crate) const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
 /// Largest pixels per degree that the filters are made for; they reach over an eighth of a degree each way.
-pub const MOST_PIXELS_PER_DEGREE: f64 = 1000.0;
+pub(crate) const MOST_PIXELS_PER_DEGREE: f64 = 1000.0;
 
 /// FLIP of two pictures as they are displayed, pixel by pixel, 0 to 1: row by row, `width` pixels each.
 ///
 /// Values are linear Rec. 709; beyond `[0, 1]` they are clamped, as a display does. NaN is not allowed. Both pictures
 /// have the same size; `pixels_per_degree` is 1 to [`MOST_PIXELS_PER_DEGREE`].
-pub fn ldr(reference: &[Vec3], test: &[Vec3], width: usize, pixels_per_degree: f64) -> Vec<f32> {
+pub(crate) fn ldr(reference: &[Vec3], test: &[Vec3], width: usize, pixels_per_degree: f64) -> Vec<f32> {
     debug_assert_eq!(reference.len(), test.len());
     let opponent = Opponent::new();
     let contrast = Contrast::new(pixels_per_degree);

@@ -23,6 +23,6 @@ mod filter;
 mod ldr;
 mod pooled;
 
-pub use exposure::{Exposures, hdr};
-pub use ldr::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, ldr};
-pub use pooled::Pooled;
+pub(crate) use exposure::{Exposures, hdr};
+pub(crate) use ldr::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, ldr};
+pub(crate) use pooled::Pooled;

@@ -2,7 +2,7 @@
 
 /// What a map of differences comes to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pooled {
+pub(crate) struct Pooled {
     /// The mean.
     pub mean: f64,
     /// Half of the sum of all differences lies in pixels with this difference or less.
@@ -13,7 +13,7 @@ pub struct Pooled {
 
 impl Pooled {
     /// Of these differences, 0 or more each; of none, all are 0.
-    pub fn of(differences: &[f64]) -> Self {
+    pub(crate) fn of(differences: &[f64]) -> Self {
         let mut sorted = differences.to_vec();
         sorted.sort_by(f64::total_cmp);
         let total: f64 = sorted.iter().sum();

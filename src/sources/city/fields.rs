@@ -7,7 +7,7 @@ use crate::base::error::{Error, Result};
 use std::ops::RangeInclusive;
 
 /// A table of a recipe.
-pub trait Plan {
+pub(crate) trait Plan {
     /// Shows every field to `fields`, in order.
     ///
     /// # Errors
@@ -16,7 +16,7 @@ pub trait Plan {
 }
 
 /// Someone who goes through the fields of a [`Plan`], reading or checking them.
-pub trait Fields {
+pub(crate) trait Fields {
     /// A number in `unit`.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ pub(super) fn part<T: Plan + Default>(f: &mut dyn Fields, name: &'static str, va
 }
 
 /// The names of a plan's fields and tables.
-pub fn names(plan: &mut dyn Plan) -> Vec<&'static str> {
+pub(crate) fn names(plan: &mut dyn Plan) -> Vec<&'static str> {
     let mut names = Names(Vec::new());
     // The collector refuses nothing.
     let _ = plan.visit(&mut names);

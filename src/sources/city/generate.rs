@@ -12,7 +12,7 @@ use glam::DVec2;
 
 /// A generated city. Its crossing of the two middle streets lies at the coordinate origin, the street surface at z = 0.
 #[derive(Clone, Debug, Default)]
-pub struct Grown {
+pub(crate) struct Grown {
     /// All lights, group after group.
     pub lights: Vec<Shape>,
     /// Which part made which lights.
@@ -33,7 +33,7 @@ pub struct Grown {
 ///
 /// # Errors
 /// A plan that [`City::check`] refuses.
-pub fn generate(plan: &City, seed: u64) -> Result<Grown> {
+pub(crate) fn generate(plan: &City, seed: u64) -> Result<Grown> {
     plan.check()?;
     let town = buildings::build(&plan.grid(), plan.buildings.as_ref(), seed);
     let mut grown = Grown {

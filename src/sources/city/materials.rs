@@ -26,7 +26,7 @@ pub(super) const FACADES: [(&str, [f32; 3]); 5] = [
 ];
 
 /// The materials of every city, by whose names recipes can call them. Albedos are those of dry, worn materials.
-pub fn builtin_materials() -> Vec<Material> {
+pub(crate) fn builtin_materials() -> Vec<Material> {
     let material = |name: &str, albedo: [f32; 3], street| Material { name: name.into(), albedo: albedo.into(), street };
     let mut all = vec![
         material("asphalt", [0.10, 0.10, 0.105], true),

@@ -32,20 +32,13 @@ mod tag;
 mod traffic;
 mod windows;
 
-pub use beacons::Beacons;
-pub use buildings::Buildings;
-pub use bulbs::Bulbs;
-pub use fields::{Fields, Plan, names};
+pub(crate) use buildings::Buildings;
+pub(crate) use bulbs::Bulbs;
+pub(crate) use fields::{Fields, Plan, names};
 #[cfg(feature = "recipe")]
 pub(crate) use fields::{count_wanted, number_wanted, span_wanted};
-pub use floodlights::Floodlights;
-pub use generate::{Grown, generate};
-pub use lamps::{LampKind, Lamps};
-pub use materials::builtin_materials;
-pub use moon::Moon;
-pub use plan::City;
-pub use shops::Shops;
-pub use signs::Signs;
-pub use solid::Solid;
-pub use traffic::Traffic;
-pub use windows::Windows;
+pub(crate) use generate::{Grown, generate};
+pub(crate) use lamps::{LampKind, Lamps};
+pub(crate) use materials::builtin_materials;
+pub(crate) use plan::City;
+pub(crate) use solid::Solid;

@@ -16,7 +16,7 @@ use crate::base::error::{Error, Result};
 
 /// A city. A part that is `None` is left out; without any, bare streets and pavements remain.
 #[derive(Clone, Debug)]
-pub struct City {
+pub(crate) struct City {
     /// How many lights there are: with `density`, the extent. Lit windows make the number exact.
     pub lights: u64,
     /// Lights per km^2 of ground.
@@ -124,7 +124,7 @@ impl City {
     ///
     /// # Errors
     /// A number outside its range; numbers that together ask for a city too big for memory.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         self.clone().visit(&mut Check { owner: "city".into() })?;
         let refuse = |name: &str, value: String, expected: String| {
             Err(Error::Parameter { owner: "city".into(), name: name.into(), value, expected })

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 /// An axis-aligned box that is filled; corners in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
+pub(crate) struct Solid {
     /// The corner with the least coordinates.
     pub low: Vec3,
     /// The corner with the greatest coordinates.
@@ -15,7 +15,7 @@ pub struct Solid {
 
 impl Solid {
     /// Whether a point lies inside, not on a face.
-    pub fn contains(&self, point: Vec3) -> bool {
+    pub(crate) fn contains(&self, point: Vec3) -> bool {
         point.cmpgt(self.low).all() && point.cmplt(self.high).all()
     }
 }

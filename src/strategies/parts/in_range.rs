@@ -13,7 +13,7 @@ use crate::visibility::influence_tree::InfluenceTree;
 use std::sync::Arc;
 
 /// The hierarchy that lists the lights in range of a receiver, and the number of picks among them.
-pub struct InRange {
+pub(crate) struct InRange {
     scene: Arc<Scene>,
     tree: InfluenceTree,
     picks: u32,
@@ -21,7 +21,7 @@ pub struct InRange {
 
 /// The lights in range of a receiver that can add anything there, with their weights.
 #[derive(Default)]
-pub struct Listed {
+pub(crate) struct Listed {
     lights: Vec<LightId>,
     sums: Cumulative,
 }

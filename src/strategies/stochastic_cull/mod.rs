@@ -22,7 +22,7 @@ use crate::strategy::{AnySampler, Arguments, BuildContext, Claim, Info, PerPass,
 pub(crate) use pass::drawn2;
 
 /// Lights with random ranges, `picks` of them shaded.
-pub struct StochasticCull {
+pub(crate) struct StochasticCull {
     range: Range,
     picks: u32,
     draw: Draw,

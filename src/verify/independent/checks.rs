@@ -12,7 +12,7 @@ pub(in crate::verify) const NAMES: [&str; 6] =
 
 /// Checks a path of the scene of a stage. `level` is the chance that the one check of them that goes by chance,
 /// `exact-sum`, fails although all is right.
-pub fn independent(stage: &Stage, path: &dyn Path, seed: u64, level: f64) -> Vec<Check> {
+pub(crate) fn independent(stage: &Stage, path: &dyn Path, seed: u64, level: f64) -> Vec<Check> {
     let geometry = Geometry::new(stage.scene());
     let mut checks = vec![receivers::receivers(&geometry, path.receivers(), seed)];
     checks.extend(pairs::pairs(&geometry, path, seed));

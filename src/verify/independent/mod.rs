@@ -31,6 +31,5 @@ mod receivers;
 mod sums;
 
 pub(super) use checks::NAMES;
-pub use checks::independent;
-pub use own::Own;
-pub use path::Path;
+pub(crate) use checks::independent;
+pub(crate) use own::Own;

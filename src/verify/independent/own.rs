@@ -11,7 +11,7 @@ use crate::visibility::stage::Stage;
 use glam::DVec3;
 
 /// The program's own path.
-pub struct Own<'a>(pub &'a Stage);
+pub(crate) struct Own<'a>(pub &'a Stage);
 
 impl Path for Own<'_> {
     fn receivers(&self) -> &[Receiver] {

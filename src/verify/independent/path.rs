@@ -6,7 +6,7 @@ use crate::scene::receiver::Receiver;
 use glam::DVec3;
 
 /// How the program comes to what a light adds at a receiver. Tests put a wrong one in its place.
-pub trait Path: Sync {
+pub(crate) trait Path: Sync {
     /// What the camera sees.
     fn receivers(&self) -> &[Receiver];
     /// What the point `uv` of a light, drawn `by` a way, adds at a receiver with nothing in between, in cd/m^2.
