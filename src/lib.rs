@@ -41,7 +41,7 @@ pub mod cli;
 #[cfg(feature = "measure")]
 mod explain;
 #[cfg(feature = "gltf")]
-pub mod export;
+mod export;
 #[cfg(feature = "image")]
 pub mod image;
 #[cfg(feature = "measure")]
@@ -55,7 +55,7 @@ pub mod prelude;
 pub mod record;
 pub mod render;
 #[cfg(feature = "plots")]
-pub mod report;
+mod report;
 pub mod scene;
 pub mod shading;
 pub mod sources;

@@ -16,7 +16,7 @@ pub fn exposure(ev100: f32) -> f32 {
 }
 
 /// The inverse of [`exposure`].
-pub fn ev100(exposure: f32) -> f32 {
+pub(crate) fn ev100(exposure: f32) -> f32 {
     -(1.2 * exposure).log2()
 }
 
@@ -36,7 +36,7 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 ///
 /// Negative components (a sodium lamp lies outside the gamut) are set to 0 before normalising.
 /// Source: Krystek, Color Res. Appl. 10(1), 1985 (rational fit in CIE 1960 u, v).
-pub fn black_body(kelvin: f32) -> Vec3 {
+pub(crate) fn black_body(kelvin: f32) -> Vec3 {
     let t = f64::from(kelvin.clamp(1_700.0, 15_000.0));
     let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
         / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);

@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// A name that `target` does not use or cannot hold; for glTF, a light beyond 2^127 or a `.glb` beyond 4 GiB.
-pub fn export(scene: &Scene, target: Renderer, file: &Path) -> Result<Export> {
+pub(crate) fn export(scene: &Scene, target: Renderer, file: &Path) -> Result<Export> {
     target.check(file)?;
     match target {
         Renderer::Gltf => gltf::export(scene, file),

@@ -9,7 +9,7 @@ pub(super) const SAMPLES: u32 = 64;
 
 /// A scene in the words of another renderer, not yet on disk.
 #[derive(Clone, Debug)]
-pub struct Export {
+pub(crate) struct Export {
     /// Every file with its bytes, the one that names the others last.
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// What the format cannot say, with figures.
@@ -22,7 +22,7 @@ impl Export {
     ///
     /// # Errors
     /// A folder that cannot be made; a file that cannot be written.
-    pub fn write(&self) -> Result<()> {
+    pub(crate) fn write(&self) -> Result<()> {
         if let Some(folder) = self.files.first().and_then(|(path, _)| path.parent())
             && self.files.len() > 1
         {

@@ -25,6 +25,5 @@ mod renderer;
 mod serialized;
 mod text;
 
-pub use by_renderer::export;
-pub use files::Export;
-pub use renderer::Renderer;
+pub(crate) use by_renderer::export;
+pub(crate) use renderer::Renderer;

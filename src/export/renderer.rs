@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// What a scene can be exported to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Renderer {
+pub(crate) enum Renderer {
     /// glTF 2.0: `.glb`, or `.gltf` with its buffer embedded; for Blender and most others.
     Gltf,
     /// pbrt-v4: one `.pbrt` file.
@@ -17,10 +17,10 @@ pub enum Renderer {
 
 impl Renderer {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Gltf, Self::Pbrt, Self::Mitsuba];
+    pub(crate) const ALL: [Self; 3] = [Self::Gltf, Self::Pbrt, Self::Mitsuba];
 
     /// The name on the command line.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Gltf => "gltf",
             Self::Pbrt => "pbrt",
@@ -32,7 +32,7 @@ impl Renderer {
     ///
     /// # Errors
     /// An unknown name is an [`Error::Unknown`].
-    pub fn named(text: &str) -> Result<Self> {
+    pub(crate) fn named(text: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(|| Error::Unknown {
             what: "format",
             name: text.to_owned(),
@@ -53,7 +53,7 @@ impl Renderer {
     ///
     /// # Errors
     /// An extension that is none of this format's, or none at all.
-    pub fn check(self, file: &Path) -> Result<()> {
+    pub(crate) fn check(self, file: &Path) -> Result<()> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if self.extensions().contains(&&*extension) {
             return Ok(());

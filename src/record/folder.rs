@@ -21,7 +21,7 @@ const MARK_SCHEMA: u32 = 1;
 /// What a folder is marked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub(crate) enum Kind {
     /// A comparison.
     Comparison,
     /// A study.
@@ -40,7 +40,7 @@ struct Mark {
 
 /// A marked folder that nobody else writes in for as long as this lives.
 #[derive(Debug)]
-pub struct ResultFolder {
+pub(crate) struct ResultFolder {
     path: PathBuf,
     /// Open, and locked.
     mark: File,
@@ -52,7 +52,7 @@ impl ResultFolder {
     /// # Errors
     /// A folder that is somebody's own, holds other results or is in use, of which nothing is touched; one that cannot
     /// be made, read or written.
-    pub fn open(path: &Path, kind: Kind) -> Result<Self> {
+    pub(crate) fn open(path: &Path, kind: Kind) -> Result<Self> {
         fs::create_dir_all(path).map_err(Error::io("create", path))?;
         if !is_marked(path) && !is_empty(path)? {
             return Err(foreign(path));
@@ -81,7 +81,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// A folder that cannot be made or marked.
-    pub fn create(results: &Path, date: &str, what: &str, revision: &str, kind: Kind) -> Result<Self> {
+    pub(crate) fn create(results: &Path, date: &str, what: &str, revision: &str, kind: Kind) -> Result<Self> {
         fs::create_dir_all(results).map_err(Error::io("create", results))?;
         let short: String = revision.chars().take(7).collect();
         let name = file_name(&format!("{date}-{what}-{short}"));
@@ -102,7 +102,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// As [`open`](Self::open).
-    pub fn check(path: &Path, kind: Kind) -> Result<()> {
+    pub(crate) fn check(path: &Path, kind: Kind) -> Result<()> {
         if path.exists() && !is_empty(path)? { Self::open(path, kind).map(drop) } else { Ok(()) }
     }
 
@@ -111,12 +111,12 @@ impl ResultFolder {
     ///
     /// # Errors
     /// A folder that is in use by another process; a mark that cannot be opened or locked.
-    pub fn hold(path: &Path) -> Result<Option<Self>> {
+    pub(crate) fn hold(path: &Path) -> Result<Option<Self>> {
         if is_marked(path) { Self::locked(path).map(Some) } else { Ok(None) }
     }
 
     /// Where it lies.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -124,7 +124,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// What cannot be read or removed.
-    pub fn remove(&self) -> std::io::Result<()> {
+    pub(crate) fn remove(&self) -> std::io::Result<()> {
         for entry in fs::read_dir(&self.path)? {
             let entry = entry?;
             if entry.file_name() == MARK {

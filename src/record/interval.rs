@@ -26,7 +26,7 @@ impl Interval {
     pub const NONE: Self = Self { mean: f64::NAN, low: f64::NAN, high: f64::NAN };
 
     /// As far to either side.
-    pub fn symmetric(mean: f64, half_width: f64) -> Self {
+    pub(crate) fn symmetric(mean: f64, half_width: f64) -> Self {
         Self { mean, low: mean - half_width, high: mean + half_width }
     }
 
@@ -36,7 +36,7 @@ impl Interval {
     }
 
     /// With its ends from elsewhere.
-    pub fn of(mean: f64, (low, high): (f64, f64)) -> Self {
+    pub(crate) fn of(mean: f64, (low, high): (f64, f64)) -> Self {
         Self { mean, low, high }
     }
 
@@ -48,7 +48,7 @@ impl Interval {
     }
 
     /// Whether the value may be the right one; an interval that is not known holds nothing.
-    pub fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }
 
@@ -58,7 +58,7 @@ impl Interval {
     }
 
     /// The interval in another unit, `factor` of which make one of this; a factor below 0 turns it round.
-    pub fn times(&self, factor: f64) -> Self {
+    pub(crate) fn times(&self, factor: f64) -> Self {
         let (a, b) = (self.low * factor, self.high * factor);
         Self { mean: self.mean * factor, low: a.min(b), high: a.max(b) }
     }

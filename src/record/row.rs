@@ -36,7 +36,7 @@ pub(crate) const COLUMNS: [&str; 28] = [
 
 /// One strategy, one run, one budget, one scene. Errors are over receiver pixels against the scene's reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// The scene's name.
     pub scene: String,
     /// Name and parameters: `light-tree:arity=8,split=0.5`.
@@ -73,17 +73,17 @@ pub struct Row {
 
 impl Row {
     /// A row that failed: no numbers, only where and why.
-    pub fn failed(scene: String, strategy: String, run: u32, passes: u32, error: String) -> Self {
+    pub(crate) fn failed(scene: String, strategy: String, run: u32, passes: u32, error: String) -> Self {
         Self { error: Some(error), ..Self::blank(scene, strategy, run, passes) }
     }
 
     /// CPU seconds from nothing to the image.
-    pub fn total_cpu_s(&self) -> f64 {
+    pub(crate) fn total_cpu_s(&self) -> f64 {
         self.setup_cpu_s + self.cpu_s
     }
 
     /// A row without its numbers yet.
-    pub fn blank(scene: String, strategy: String, run: u32, passes: u32) -> Self {
+    pub(crate) fn blank(scene: String, strategy: String, run: u32, passes: u32) -> Self {
         let none = f64::NAN;
         Self {
             scene,
@@ -106,7 +106,7 @@ impl Row {
     }
 
     /// What tells it apart from all others of a comparison: scene, strategy, run and passes.
-    pub fn key(&self) -> (&str, &str, u32, u32) {
+    pub(crate) fn key(&self) -> (&str, &str, u32, u32) {
         (&self.scene, &self.strategy, self.run, self.passes)
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Where the figures come from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Machine {
+pub(crate) struct Machine {
     /// The processor's name.
     pub cpu: String,
     /// Cores that the run could use.
@@ -19,7 +19,7 @@ pub struct Machine {
 /// One call of the tool: everything in `run.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RunRecord {
+pub(crate) struct RunRecord {
     /// [`SCHEMA`](super::SCHEMA) of the writer.
     pub schema: u32,
     /// The command line.

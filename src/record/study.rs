@@ -10,12 +10,12 @@ use super::run::Machine;
 use serde::{Deserialize, Serialize};
 
 /// Version of the files' layout; files of another version are refused.
-pub const STUDY_SCHEMA: u32 = 2;
+pub(crate) const STUDY_SCHEMA: u32 = 2;
 
 /// One run of one study: everything in `study.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StudyRecord {
+pub(crate) struct StudyRecord {
     /// [`STUDY_SCHEMA`] of the writer.
     pub schema: u32,
     /// The study's name.
@@ -65,7 +65,7 @@ pub struct StudyRecord {
 /// A picture that a study made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PictureRecord {
+pub(crate) struct PictureRecord {
     /// Its file in the study's folder.
     pub file: String,
     /// What it shows.
@@ -75,7 +75,7 @@ pub struct PictureRecord {
 /// A table without its cells.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TableRecord {
+pub(crate) struct TableRecord {
     /// Its name, which names its file: `<name>.csv`.
     pub name: String,
     /// Its title, for readers.
@@ -91,7 +91,7 @@ pub struct TableRecord {
 /// A column: what its cells are and how they are shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ColumnRecord {
+pub(crate) struct ColumnRecord {
     /// Its name in the file, which ends in its base unit if it has one: `setup_cpu_s`.
     pub name: String,
     /// Its head on a page, with the unit shown there; lines separated by `\n`.
@@ -103,7 +103,7 @@ pub struct ColumnRecord {
 /// What cells hold and how they are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Format {
+pub(crate) enum Format {
     /// Text: a name as it is typed.
     Name,
     /// Text: words.
@@ -128,7 +128,7 @@ pub enum Format {
 
 impl Format {
     /// Whether a cell may stand in a column of this format; a missing one may always.
-    pub fn takes(self, cell: &Cell) -> bool {
+    pub(crate) fn takes(self, cell: &Cell) -> bool {
         match cell {
             Cell::Missing => true,
             Cell::Text(_) => self.is_text(),
@@ -138,17 +138,17 @@ impl Format {
     }
 
     /// Whether its cells are an end of an interval.
-    pub fn is_end(self) -> bool {
+    pub(crate) fn is_end(self) -> bool {
         matches!(self, Self::Low | Self::High)
     }
 
     /// Whether its cells are texts.
-    pub fn is_text(self) -> bool {
+    pub(crate) fn is_text(self) -> bool {
         matches!(self, Self::Name | Self::Words)
     }
 
     /// Whether its cells are whole numbers.
-    pub fn is_whole(self) -> bool {
+    pub(crate) fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::Bytes)
     }
 }
@@ -156,7 +156,7 @@ impl Format {
 /// What is drawn of a table: a curve for each value of one column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PlotRecord {
+pub(crate) struct PlotRecord {
     /// Its name, which names its file: `<study>-<name>.svg`.
     pub name: String,
     /// Its title, for readers.
@@ -177,7 +177,7 @@ pub struct PlotRecord {
 /// One axis of a plot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct AxisRecord {
+pub(crate) struct AxisRecord {
     /// The column.
     pub column: String,
     /// What is written along it, with the unit.
@@ -188,7 +188,7 @@ pub struct AxisRecord {
 
 /// What stands in a row's place under a column.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
+pub(crate) enum Cell {
     /// Nothing: not measured, or without meaning here.
     Missing,
     /// A text, never empty; line breaks in it become spaces.
@@ -201,7 +201,7 @@ pub enum Cell {
 
 impl Cell {
     /// The number that it holds, if it does.
-    pub fn number(&self) -> Option<f64> {
+    pub(crate) fn number(&self) -> Option<f64> {
         match *self {
             Self::Number(number) => Some(number),
             Self::Whole(count) => Some(count as f64),
@@ -211,7 +211,7 @@ impl Cell {
 }
 
 /// One row of a table, a cell a column.
-pub type Cells = Vec<Cell>;
+pub(crate) type Cells = Vec<Cell>;
 
 impl From<&str> for Cell {
     fn from(text: &str) -> Self {
@@ -239,7 +239,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 
 /// A study with its cells.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Study {
+pub(crate) struct Study {
     /// All but the cells.
     pub record: StudyRecord,
     /// The rows of each table, in the order of [`StudyRecord::tables`].
@@ -248,7 +248,7 @@ pub struct Study {
 
 impl TableRecord {
     /// The place of the column of that name.
-    pub fn column(&self, name: &str) -> Option<usize> {
+    pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
 }

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 /// Exact radiance of a receiver in cd/m^2: the noise-free sum and two independent estimates of the rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Exact {
+pub(crate) struct Exact {
     /// Point, spot and directional lights.
     pub sum: DVec3,
     /// Triangles, twice.
@@ -28,7 +28,7 @@ pub struct Exact {
 
 impl Exact {
     /// The best estimate.
-    pub fn mean(&self) -> DVec3 {
+    pub(crate) fn mean(&self) -> DVec3 {
         self.sum + (self.halves[0] + self.halves[1]) * 0.5
     }
 }

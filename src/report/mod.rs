@@ -20,10 +20,10 @@ mod sweep;
 mod table;
 
 pub(crate) use number::{grouped, short};
-pub use page::{page, section};
-pub use plot::plot;
-pub use study::study_text;
-pub use table::table;
+pub(crate) use page::{page, section};
+pub(crate) use plot::plot;
+pub(crate) use study::study_text;
+pub(crate) use table::table;
 
 use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
@@ -36,7 +36,7 @@ use std::path::{Path, PathBuf};
 
 /// A derived file: its name within the result folder and its content.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Derived {
+pub(crate) struct Derived {
     /// `<scene>.md`, `<scene>.svg` or `<scene>-<parameter>.svg`, `<study>.md` or `<study>-<plot>.svg`.
     pub name: String,
     /// All of it.
@@ -47,7 +47,7 @@ pub struct Derived {
 ///
 /// # Errors
 /// Two pages or plots that would be written to one file; a plot that cannot be drawn.
-pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
+pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     let mut files: Vec<Derived> = Vec::new();
     for scene in &run.scenes {
         let stem = store::file_name(&scene.name);
@@ -83,7 +83,7 @@ pub fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn derive_study(record: &Study) -> Result<Vec<Derived>> {
+pub(crate) fn derive_study(record: &Study) -> Result<Vec<Derived>> {
     let name = format!("{}.md", store::file_name(&record.record.study));
     let plots = study::plots(record)?.into_iter().map(|(name, text)| Derived { name, text });
     Ok(std::iter::once(Derived { name, text: study::page(record) }).chain(plots).collect())
@@ -91,7 +91,7 @@ pub fn derive_study(record: &Study) -> Result<Vec<Derived>> {
 
 /// A named section for a page that people write.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Section {
+pub(crate) struct Section {
     /// The scene's name, or the study's after "study ".
     pub name: String,
     /// Its Markdown.
@@ -103,7 +103,7 @@ pub struct Section {
 ///
 /// # Errors
 /// A folder without a record of a comparison or a study; a record or rows that cannot be read, or with a mistake.
-pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
+pub(crate) fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
     let seen = page.parent().and_then(|home| folder.strip_prefix(home).ok()).unwrap_or(folder);
     if is_study(folder) {
         let record = read_study(folder)?;
@@ -123,7 +123,7 @@ pub fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
 /// # Errors
 /// A folder without a record of a comparison or a study, or that another process writes in; records and rows with a
 /// mistake; what cannot be read, drawn or written.
-pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn report(folder: &Path) -> Result<Vec<PathBuf>> {
     let _held = ResultFolder::hold(folder)?;
     let files = read(folder)?;
     write(folder, &files)?;
@@ -134,13 +134,13 @@ pub fn report(folder: &Path) -> Result<Vec<PathBuf>> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(folder: &Path, files: &[Derived]) -> Result<()> {
+pub(crate) fn write(folder: &Path, files: &[Derived]) -> Result<()> {
     files.iter().try_for_each(|file| write_whole(&folder.join(&file.name), file.text.as_bytes()))
 }
 
 /// A derived file that is not what the raw rows say.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Drift {
+pub(crate) enum Drift {
     /// It is not there.
     #[error("{}: missing", .0.display())]
     Missing(PathBuf),
@@ -167,7 +167,7 @@ pub enum Drift {
 ///
 /// # Errors
 /// A folder without a record of a comparison or a study; records and rows with a mistake; what cannot be read or drawn.
-pub fn check(folder: &Path) -> Result<Vec<Drift>> {
+pub(crate) fn check(folder: &Path) -> Result<Vec<Drift>> {
     let mut drifts: Vec<Drift> = faults(folder)?;
     for Derived { name, text } in read(folder)? {
         let file = folder.join(name);

@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// The page of a scene in GitHub's Markdown, with the command and the conditions that it came from.
 ///
 /// `plot` is the address of its plot as seen from the page; `rows` may hold other scenes too.
-pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
+pub(crate) fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("#", run, scene, plot);
     for sheet in sheets(scene, rows) {
         _ = write!(text, "\n{}", sheet.markdown(2));
@@ -27,7 +27,7 @@ pub fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> S
 /// command.
 ///
 /// `plot` is the address of its plot as seen from the page.
-pub fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
+pub(crate) fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &str) -> String {
     let mut text = opening("##", run, scene, plot);
     if let Some(answer) = sheets(scene, rows).first() {
         _ = write!(text, "\n{}", answer.markdown(3));

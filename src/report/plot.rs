@@ -15,7 +15,7 @@ use crate::record::{Point, SceneRecord, Summary};
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn plot(scene: &SceneRecord) -> Result<String> {
+pub(crate) fn plot(scene: &SceneRecord) -> Result<String> {
     let mut exact: Vec<String> = Vec::new();
     let mut series = Vec::new();
     for summary in ordered(scene).into_iter().filter(|s| measured(s)) {

@@ -13,7 +13,7 @@ use crate::record::{Interval, store};
 use std::fmt::Write;
 
 /// The tables of a study in plain text, under what a reader must know of all of them.
-pub fn study_text(study: &Study) -> String {
+pub(crate) fn study_text(study: &Study) -> String {
     let record = &study.record;
     let mut text = format!("{}: {}\n", record.study, record.question);
     let warnings = warnings(record).into_iter().map(|warning| format!("warning: {warning}"));

@@ -17,7 +17,7 @@ use std::fmt::Write;
 /// The tables of a scene in plain text, at most 140 columns wide, under a few lines on what was measured.
 ///
 /// `rows` may hold other scenes too.
-pub fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> String {
+pub(crate) fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> String {
     let mut text = format!("{}\n", scene.name);
     let notes = scene.notes.iter().map(|note| format!("note: {note}"));
     let warnings = warnings(run, scene).into_iter().map(|warning| format!("warning: {warning}"));

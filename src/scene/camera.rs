@@ -64,7 +64,7 @@ impl Camera {
     }
 
     /// The same view on a film of at most so many pixels, 1 or more.
-    pub fn shrunk(&self, pixels: u32) -> Self {
+    pub(crate) fn shrunk(&self, pixels: u32) -> Self {
         let shrink = (f64::from(pixels) / (f64::from(self.width) * f64::from(self.height))).sqrt().min(1.0);
         let [width, height] = [self.width, self.height].map(|side| ((f64::from(side) * shrink) as u32).max(1));
         let aspect = |width: u32, height: u32| f64::from(width) / f64::from(height);
@@ -74,7 +74,7 @@ impl Camera {
 
     /// The camera of a scene that was turned and moved: at `position`, looking along what `turn` makes of its
     /// directions.
-    pub fn turned(&self, position: Vec3, turn: DQuat) -> Self {
+    pub(crate) fn turned(&self, position: Vec3, turn: DQuat) -> Self {
         Self { position, forward: turn * self.forward, right: turn * self.right, down: turn * self.down, ..*self }
     }
 

@@ -202,7 +202,7 @@ impl Light {
 /// Flux in lm of a spot whose peak is 1 cd, in sr: the cone's profile integrated over directions.
 ///
 /// `2 pi ((1 - cos_inner) + (cos_inner - cos_outer) / 3)`: the ramp is linear in the cosine and squared.
-pub fn cone_flux(cos_inner: f32, cos_outer: f32) -> f32 {
+pub(crate) fn cone_flux(cos_inner: f32, cos_outer: f32) -> f32 {
     2.0 * PI * ((1.0 - cos_inner) + (cos_inner - cos_outer) / 3.0)
 }
 

@@ -6,7 +6,7 @@ pub mod camera;
 pub mod cutoff;
 pub mod light;
 pub mod light_sampling;
-pub mod needs;
+pub(crate) mod needs;
 pub mod receiver;
 
 use crate::base::colour::exposure;

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 /// What a scene needs of a renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Needs {
+pub(crate) struct Needs {
     /// The kinds of light that exist, as a set of [`Kind::bit`]s.
     pub kinds: u8,
     /// Whether anything can stand between a surface and a light.
@@ -17,16 +17,16 @@ pub struct Needs {
 
 impl Needs {
     /// Everything: nothing is left out.
-    pub const ALL: Self = Self { kinds: 0b1111, occlusion: true };
+    pub(crate) const ALL: Self = Self { kinds: 0b1111, occlusion: true };
 
     /// Looks at a scene once.
-    pub fn of(scene: &Scene) -> Self {
+    pub(crate) fn of(scene: &Scene) -> Self {
         let kinds = scene.lights().iter().fold(0, |set, light| set | light.kind().bit());
         Self { kinds, occlusion: can_occlude(scene) }
     }
 
     /// Whether a kind of light exists.
-    pub fn has(self, kind: Kind) -> bool {
+    pub(crate) fn has(self, kind: Kind) -> bool {
         self.kinds & kind.bit() != 0
     }
 }

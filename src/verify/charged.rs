@@ -12,7 +12,7 @@ const SHARE: f64 = 0.1;
 const START: f64 = 5e-3;
 
 /// Checks CPU seconds charged to a strategy against those that the process spent meanwhile, with nothing else running.
-pub fn charged(charged_s: f64, spent_s: f64) -> Check {
+pub(crate) fn charged(charged_s: f64, spent_s: f64) -> Check {
     let detail = format!("CPU seconds between {charged_s:.4} charged and {spent_s:.4} spent by the process");
     Check::new(CHARGED, (spent_s - charged_s).abs(), SHARE * spent_s + START, detail)
 }

@@ -143,7 +143,7 @@ fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
 }
 
 /// Allocations that a piece of work makes when it is done again.
-pub fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -> u64 {
+pub(crate) fn allocations<W: FnMut()>(counter: fn() -> u64, make: impl FnOnce() -> W) -> u64 {
     let mut work = make();
     work();
     work();

@@ -13,7 +13,7 @@ const HALVES: &str = "halves";
 const EQUAL: f64 = 0.5;
 
 /// Checks the values of a reference; one without light from triangles has no noise to show.
-pub fn halves(values: &[Exact]) -> Check {
+pub(crate) fn halves(values: &[Exact]) -> Check {
     let noisy = || values.iter().filter(|value| value.halves.iter().any(|half| half.max_element() > 0.0));
     let equal = noisy().filter(|value| value.halves[0] == value.halves[1]).count();
     let detail = format!("share of {} receivers with light from triangles whose halves are equal", noisy().count());

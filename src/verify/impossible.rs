@@ -11,12 +11,12 @@ pub(super) const VALID: &str = "weights-finite";
 pub(super) const POSSIBLE: [&str; 2] = [IDS, VALID];
 
 /// How many picks name no light of a scene with so many.
-pub fn picks_in_range(picks: &[Pick], lights: usize) -> usize {
+pub(crate) fn picks_in_range(picks: &[Pick], lights: usize) -> usize {
     picks.iter().filter(|pick| pick.light as usize >= lights).count()
 }
 
 /// How many picks have a weight that is negative or not finite.
-pub fn picks_valid(picks: &[Pick]) -> usize {
+pub(crate) fn picks_valid(picks: &[Pick]) -> usize {
     picks.iter().filter(|pick| !(pick.weight.is_finite() && pick.weight >= 0.0)).count()
 }
 

@@ -59,13 +59,11 @@ mod truth;
 mod verifier;
 mod weights;
 
-pub use by_chance::BY_CHANCE;
-pub use charged::charged;
+pub(crate) use by_chance::BY_CHANCE;
+pub(crate) use charged::charged;
 pub use check::Check;
-pub use contract::allocations;
-pub use halves::halves;
-pub use impossible::{picks_in_range, picks_valid};
-pub use names::names;
+pub(crate) use halves::halves;
+pub(crate) use names::names;
 pub use options::VerifyOptions;
-pub use truth::Truth;
+pub(crate) use truth::Truth;
 pub use verifier::Verifier;

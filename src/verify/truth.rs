@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 pub(super) const REPEATS: usize = 8;
 
 /// The radiance that each light of a scene adds at one receiver, as luminance in cd/m^2.
-pub struct Truth {
+pub(crate) struct Truth {
     /// Of the triangles that add anything: few of a city's do.
     triangles: Vec<(u32, [f64; REPEATS])>,
     mean: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Truth {
 impl Truth {
     /// Evaluates every light of the scene, whatever the stage leaves out, with `points` points shared out among
     /// triangles in each of 8 repetitions, on top of one a light.
-    pub fn new(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Self {
+    pub(crate) fn new(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Self {
         let lights = stage.scene().lights();
         let mut rays = 0;
         let all = || lights.iter().zip(0u32..).filter(|(light, _)| light.kind() == Kind::Triangle);
@@ -55,12 +55,12 @@ impl Truth {
     }
 
     /// What each light adds.
-    pub fn lights(&self) -> &[f64] {
+    pub(crate) fn lights(&self) -> &[f64] {
         &self.mean
     }
 
     /// What all lights add.
-    pub fn total(&self) -> f64 {
+    pub(crate) fn total(&self) -> f64 {
         self.total
     }
 
@@ -70,7 +70,7 @@ impl Truth {
     }
 
     /// Whether a light adds anything that f32 can tell from nothing beside the rest.
-    pub fn adds(&self, light: usize) -> bool {
+    pub(crate) fn adds(&self, light: usize) -> bool {
         self.mean[light] > 1e-8 * self.total
     }
 

@@ -42,7 +42,7 @@ impl<'a> Verifier<'a> {
     }
 
     /// What each light adds, at each receiver.
-    pub fn truths(&self) -> &[Truth] {
+    pub(crate) fn truths(&self) -> &[Truth] {
         &self.truths
     }
 
@@ -76,7 +76,7 @@ impl<'a> Verifier<'a> {
     }
 
     /// One look: every check fails a right sampler with the chance `options.level`.
-    pub fn look(&self, sampler: &dyn AnySampler, claim: &Claim) -> Vec<Check> {
+    pub(crate) fn look(&self, sampler: &dyn AnySampler, claim: &Claim) -> Vec<Check> {
         let subject = self.subject(sampler);
         let mut impossible = contract::impossible(&subject);
         // An id that is out of range has nothing to be looked up, and no number is near one that is none.

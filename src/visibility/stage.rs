@@ -94,7 +94,7 @@ impl Stage {
     }
 
     /// What the scene needs of a renderer.
-    pub fn needs(&self) -> Needs {
+    pub(crate) fn needs(&self) -> Needs {
         self.needs
     }
 
@@ -126,7 +126,7 @@ impl Stage {
 
     /// The same stage with another set of needs: for measuring what leaving out saves.
     #[doc(hidden)]
-    pub fn with_needs(mut self, needs: Needs) -> Self {
+    pub(crate) fn with_needs(mut self, needs: Needs) -> Self {
         self.needs = needs;
         self
     }
