@@ -83,7 +83,13 @@ const POINTS: u32 = 1024;
 /// # Errors
 /// A pixel outside the film, or that sees the sky or an emitter; a strategy that cannot serve the scene, or that picks a
 /// light which there is not.
-pub(crate) fn explain(stage: &Stage, strategy: &Configured, [x, y]: [u32; 2], passes: u32, seed: u64) -> Result<Explanation> {
+pub(crate) fn explain(
+    stage: &Stage,
+    strategy: &Configured,
+    [x, y]: [u32; 2],
+    passes: u32,
+    seed: u64,
+) -> Result<Explanation> {
     let at = receiver(stage, [x, y])?;
     let key = RunKey { seed, run: 0 };
     let sampler = strategy.build(BuildContext { stage, seed })?;

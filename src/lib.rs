@@ -30,6 +30,8 @@
 //! ```
 
 #![forbid(unsafe_code)]
+#![allow(rustdoc::private_intra_doc_links, reason = "a room says what it keeps to itself, too")]
+#![cfg_attr(not(feature = "cli"), allow(dead_code, reason = "the command line alone needs every part of every room"))]
 
 pub mod base;
 #[cfg(feature = "bench")]

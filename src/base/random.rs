@@ -63,7 +63,7 @@ impl Stream {
 
 /// 64 uniform bits as a number uniform in `0..n`. The bias of the multiply-shift is below n / 2^64.
 #[inline]
-pub fn below(bits: u64, n: usize) -> usize {
+pub(crate) fn below(bits: u64, n: usize) -> usize {
     ((u128::from(bits) * n as u128) >> 64) as usize
 }
 

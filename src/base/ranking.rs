@@ -86,11 +86,6 @@ impl Verdicts {
         Self { apart }
     }
 
-    /// Whether two are told apart.
-    pub(crate) fn apart(&self, i: usize, j: usize) -> bool {
-        self.apart[i][j]
-    }
-
     /// First and last rank that each may have: behind those told to be less, before those told to be more.
     pub(crate) fn ranks(&self) -> Vec<(usize, usize)> {
         let n = self.apart.len();

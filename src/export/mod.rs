@@ -8,7 +8,7 @@
 //! |---|---|
 //! | for which renderers? | [`Renderer`] |
 //! | how is a scene exported? | [`export`] |
-//! | what comes of it, and how does it get to disk? | [`Export`] |
+//! | what comes of it, and how does it get to disk? | [`Export`](files::Export) |
 //! | what does each format say? | `gltf`, `pbrt`, `mitsuba` with `serialized` |
 //! | which triangles belong together? | `meshes` |
 //! | what is a spot's cone where edges have another profile? | `cone` |

@@ -129,12 +129,6 @@ impl Truth {
         (x - self.halves[0][i].as_dvec3()) * (x - self.halves[1][i].as_dvec3())
     }
 
-    /// relMSE over some receivers only, those at `places`, of the values there; NaN of none.
-    pub(crate) fn rel_mse_at(&self, places: &[usize], values: impl Iterator<Item = Vec3>) -> f64 {
-        let error = |(&i, x): (&usize, Vec3)| (self.product(i, x.as_dvec3()) * self.weight(i)).element_sum() / 3.0;
-        places.iter().zip(values).map(error).sum::<f64>() / places.len() as f64
-    }
-
     /// All errors of an image.
     pub(crate) fn errors(&self, image: &[Vec3]) -> Errors {
         let n = self.mean.len();

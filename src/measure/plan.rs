@@ -79,7 +79,13 @@ impl Pilot {
     ///
     /// # Errors
     /// A strategy that cannot serve the scene.
-    pub(crate) fn run(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64, meter: Meter<'_>) -> Result<Self> {
+    pub(crate) fn run(
+        target: &Target<'_>,
+        truth: &Truth,
+        strategy: &Configured,
+        seed: u64,
+        meter: Meter<'_>,
+    ) -> Result<Self> {
         let (found, account) = meter.audit(|| Self::tried(target, truth, strategy, seed));
         Ok(Self { account, ..found? })
     }

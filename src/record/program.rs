@@ -21,7 +21,7 @@ impl Program {
     }
 }
 
-/// The [`Program`](crate::record::Program) of the crate that this is written in, as fixed when it was built. Its revision
+/// The [`Program`] of the crate that this is written in, as fixed when it was built. Its revision
 /// is what its build script set as `CITYLIGHTS_REVISION`: see the `build.rs` that `citylights new-strategy` writes.
 #[macro_export]
 macro_rules! program {

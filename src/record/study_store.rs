@@ -89,16 +89,6 @@ impl StudyWriter {
         write_table(self.folder.path(), record, there)
     }
 
-    /// Adds a row.
-    ///
-    /// # Errors
-    /// A table's file that cannot be written.
-    pub(crate) fn row(&mut self, table: &str, cells: Cells) -> Result<()> {
-        let place = self.place(table);
-        self.study.rows[place].push(cells);
-        write_table(self.folder.path(), &self.study.record.tables[place], &self.study.rows[place])
-    }
-
     /// Adds a note about all of the study, once however often it is begun.
     ///
     /// # Errors

@@ -72,7 +72,14 @@ pub(crate) fn grid_side(points: u32, share: f64) -> u32 {
 /// Mean contribution, in cd/m^2, over a jittered grid of `side * side` points on a triangle, shadow rays included.
 ///
 /// By area, however the stage draws its points: what judges those must not share their arithmetic.
-pub(crate) fn stratified(stage: &Stage, at: &Receiver, light: &Light, side: u32, rng: &mut Stream, rays: &mut u64) -> DVec3 {
+pub(crate) fn stratified(
+    stage: &Stage,
+    at: &Receiver,
+    light: &Light,
+    side: u32,
+    rng: &mut Stream,
+    rays: &mut u64,
+) -> DVec3 {
     let mut sum = DVec3::ZERO;
     grid(stage, at, light, side, rng, rays, |value| sum += value);
     sum / f64::from(side * side)
@@ -97,7 +104,14 @@ pub(super) fn grid(
 }
 
 /// The contribution of a point of a light that is drawn `by` a way, shadow ray included.
-pub(crate) fn shadowed(stage: &Stage, by: LightSampling, at: &Receiver, light: &Light, uv: [f32; 2], rays: &mut u64) -> DVec3 {
+pub(crate) fn shadowed(
+    stage: &Stage,
+    by: LightSampling,
+    at: &Receiver,
+    light: &Light,
+    uv: [f32; 2],
+    rays: &mut u64,
+) -> DVec3 {
     let Ok(arrival) = contribution::<0b1111>(by, light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
     let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);

@@ -47,7 +47,7 @@ impl Cutoff {
     }
 
     /// The square of a radius that holds the whole scene, in m^2: longer ones change nothing.
-    pub fn longest2(&self) -> f32 {
+    pub(crate) fn longest2(&self) -> f32 {
         self.longest * self.longest
     }
 

@@ -39,7 +39,7 @@ impl LightSampling {
 
     /// The way that is taken for a triangle at a receiver: `self`, unless that is [`Auto`](Self::Auto).
     #[inline(always)]
-    pub fn settled(self, light: &Light, at: &Receiver) -> Self {
+    pub(crate) fn settled(self, light: &Light, at: &Receiver) -> Self {
         if self != Self::Auto {
             return self;
         }

@@ -8,7 +8,7 @@
 //! | glTF 2.0 | [`gltf`] |
 //! | a few lights over a ground, for checks and tests | [`small`] |
 
-pub(crate) mod city;
+pub mod city;
 #[cfg(any(feature = "recipe", feature = "gltf"))]
 mod file;
 #[cfg(feature = "gltf")]

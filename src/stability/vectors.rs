@@ -60,13 +60,6 @@ pub(crate) struct Judged {
     pub irradiance: Finding,
 }
 
-impl Judged {
-    /// Whether both are right.
-    pub(crate) fn passed(&self) -> bool {
-        self.solid_angle.passed() && self.irradiance.passed()
-    }
-}
-
 /// Reads a file of rows.
 ///
 /// # Errors

@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(crate) trait AnyStrategy: Send + Sync {
     /// As [`Strategy::info`](super::Strategy::info).
     fn info(&self) -> Info;
-    /// As [`Strategy::gives_candidates`].
+    /// As [`Strategy::gives_candidates`](super::Strategy::gives_candidates).
     fn gives_candidates(&self) -> bool;
     /// As [`Strategy::scale_free`](super::Strategy::scale_free).
     fn scale_free(&self) -> bool;
@@ -71,7 +71,7 @@ impl Configured {
         self.strategy.scale_free()
     }
 
-    /// As [`Strategy::gives_candidates`](super::Strategy::gives_candidates).
+    /// As [`Strategy::gives_candidates`](super::Strategy::gives_candidates)(super::Strategy::gives_candidates).
     pub(super) fn gives_candidates(&self) -> bool {
         self.strategy.gives_candidates()
     }

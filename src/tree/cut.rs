@@ -193,7 +193,7 @@ impl<const N: usize> Cluster<'_, N> {
 
 /// Variance of 1/d^2 over its squared mean, for distances d spread evenly over `[near, far]`.
 ///
-/// E[g^2] - E[g]^2 itself has no correct digit in f32 once a cluster is far.
+/// `E[g^2] - E[g]^2` itself has no correct digit in f32 once a cluster is far.
 pub(crate) fn relative_variance(near: f64, far: f64) -> f64 {
     (far - near).powi(2) / (3.0 * near * far)
 }

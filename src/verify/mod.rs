@@ -9,7 +9,7 @@
 //!
 //! Two more checks look at several runs ([`Verifier::verify`]): another seed gives other picks, and samplers that are
 //! built alike agree whoever arrives first. The [arithmetic](independent) that strategies are held to is checked too, and
-//! so are the [halves] of a reference and what a strategy is [charged](charged()).
+//! so are the [halves](halves()) of a reference and what a strategy is [charged](charged()).
 //!
 //! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left
 //! out here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.

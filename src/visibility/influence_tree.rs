@@ -28,7 +28,7 @@ impl InfluenceTree {
     }
 
     /// The same lights with other squared radii, in the same hierarchy, refitted: O(n), without a build.
-    pub fn resized(&self, radius2: impl Fn(&Influence, LightId) -> f32) -> Self {
+    pub(crate) fn resized(&self, radius2: impl Fn(&Influence, LightId) -> f32) -> Self {
         let resize = |&(volume, id): &(Influence, LightId)| (Influence { radius2: radius2(&volume, id), ..volume }, id);
         let volumes: Vec<(Influence, LightId)> = self.volumes.iter().map(resize).collect();
         let mut bvh = self.bvh.clone();

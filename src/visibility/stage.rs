@@ -26,7 +26,7 @@ pub struct Stage {
 
 /// A part of what all strategies share, and how long it took: it is on no strategy's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shared {
+pub(crate) struct Shared {
     /// What was done: occluders, view (primary rays) or leave-out.
     pub part: &'static str,
     /// Wall seconds, on as many threads as the pool has that made the stage.
@@ -104,7 +104,7 @@ impl Stage {
     }
 
     /// What making the stage took, part by part.
-    pub fn shared(&self) -> &[Shared] {
+    pub(crate) fn shared(&self) -> &[Shared] {
         &self.shared
     }
 

@@ -90,7 +90,7 @@ impl View {
     }
 
     /// Shares of the pixels that see the sky and that see an emitter from either side.
-    pub fn shares(&self) -> (f64, f64) {
+    pub(crate) fn shares(&self) -> (f64, f64) {
         let share = |wanted: fn(&Seen) -> bool| {
             self.pixels.iter().filter(|seen| wanted(seen)).count() as f64 / self.pixels.len().max(1) as f64
         };

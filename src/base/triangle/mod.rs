@@ -18,7 +18,7 @@ mod projected;
 mod seen;
 mod solid_angle;
 
-pub(crate) use area::{CENTROID, uniform_point};
+pub(crate) use area::{CENTROID, low_distortion_point, uniform_point};
 pub(crate) use nearest::nearest_squared;
 pub(crate) use projected::Projected;
 pub(crate) use seen::Seen;

@@ -56,7 +56,13 @@ impl Exposures {
 ///
 /// In any unit: the exposures, [`Exposures::of`] the reference, take it away. Negative components count as 0; NaN is
 /// not allowed.
-pub(crate) fn hdr(reference: &[Vec3], test: &[Vec3], width: usize, exposures: Exposures, pixels_per_degree: f64) -> Vec<f32> {
+pub(crate) fn hdr(
+    reference: &[Vec3],
+    test: &[Vec3],
+    width: usize,
+    exposures: Exposures,
+    pixels_per_degree: f64,
+) -> Vec<f32> {
     let mut largest = vec![0.0f32; reference.len()];
     for factor in exposures.factors() {
         let shown = |picture: &[Vec3]| picture.iter().map(|&rgb| ACES.apply(factor, rgb)).collect::<Vec<_>>();

@@ -9,7 +9,7 @@ use glam::Vec3;
 
 /// Red beacons, one on every tall building.
 #[derive(Clone, Debug)]
-pub(crate) struct Beacons {
+pub struct Beacons {
     /// Buildings from this height on carry one, in m.
     pub from: f64,
     /// Intensity in cd; 32 is the low-intensity type B of ICAO Annex 14.

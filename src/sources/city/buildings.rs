@@ -24,7 +24,7 @@ pub(super) const FLOOR: f64 = 3.25;
 
 /// The buildings of a city.
 #[derive(Clone, Debug)]
-pub(crate) struct Buildings {
+pub struct Buildings {
     /// Median height in m.
     pub height: f64,
     /// Standard deviation of the height's logarithm.

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 /// Strings of bulbs.
 #[derive(Clone, Debug)]
-pub(crate) struct Bulbs {
+pub struct Bulbs {
     /// Distance between the strings in m.
     pub row: f64,
     /// Distance between the bulbs of a string in m.

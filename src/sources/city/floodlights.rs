@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 
 /// Floodlights.
 #[derive(Clone, Debug)]
-pub(crate) struct Floodlights {
+pub struct Floodlights {
     /// How many on a square kilometre.
     pub per_km2: f64,
     /// Least and greatest flux in lm.

@@ -8,11 +8,10 @@ use super::{beacons, bulbs, floodlights, ground, lamps, shops, signs, traffic, w
 use crate::base::error::Result;
 use crate::scene::light::Shape;
 use crate::scene::{LightGroup, Material, Surface};
-use glam::DVec2;
 
 /// A generated city. Its crossing of the two middle streets lies at the coordinate origin, the street surface at z = 0.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Grown {
+pub struct Grown {
     /// All lights, group after group.
     pub lights: Vec<Shape>,
     /// Which part made which lights.
@@ -23,8 +22,6 @@ pub(crate) struct Grown {
     pub materials: Vec<Material>,
     /// The buildings as filled boxes, one per tier.
     pub solids: Vec<Solid>,
-    /// The least and greatest x and y, in metres.
-    pub extent: [DVec2; 2],
     /// What a reader should know.
     pub notes: Vec<String>,
 }
@@ -33,14 +30,13 @@ pub(crate) struct Grown {
 ///
 /// # Errors
 /// A plan that [`City::check`] refuses.
-pub(crate) fn generate(plan: &City, seed: u64) -> Result<Grown> {
+pub fn generate(plan: &City, seed: u64) -> Result<Grown> {
     plan.check()?;
     let town = buildings::build(&plan.grid(), plan.buildings.as_ref(), seed);
     let mut grown = Grown {
         surfaces: ground::surfaces(&town),
         materials: builtin_materials(),
         solids: town.solids(),
-        extent: town.layout.extent(),
         ..Grown::default()
     };
     grown.surfaces.extend(town.surfaces());

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// What a lamp is made as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LampKind {
+pub enum LampKind {
     /// A spot that shines straight down, nothing at or above the horizon: full cut-off.
     Spot,
     /// A bare point.
@@ -26,7 +26,7 @@ pub(crate) enum LampKind {
 
 /// Street lamps.
 #[derive(Clone, Debug)]
-pub(crate) struct Lamps {
+pub struct Lamps {
     /// Spots or bare points.
     pub kind: LampKind,
     /// Distance along the street in m.

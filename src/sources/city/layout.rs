@@ -87,12 +87,6 @@ impl Layout {
         Self { x, y }
     }
 
-    /// The least and greatest x and y, in metres.
-    pub(super) fn extent(&self) -> [DVec2; 2] {
-        let (x, y) = (self.x.ends(), self.y.ends());
-        [DVec2::new(x[0], y[0]), DVec2::new(x[1], y[1])]
-    }
-
     /// Every street with its number.
     pub(super) fn streets(&self) -> Vec<Street> {
         let along_y = self.x.streets.iter().map(|&[low, high]| (true, low, high, self.y.ends()));

@@ -1,6 +1,6 @@
 //! A night city, grown from a few tables of numbers.
 //!
-//! [`City`] says what there is, [`generate`] makes it: first the layout of streets and blocks, then the
+//! [`City`] says what there is, [`generate()`] makes it: first the layout of streets and blocks, then the
 //! buildings, then each part's lights, last as many lit windows as the number of lights still asks for.
 //! Distributions follow what is known of real cities: about 10,600 lights per km^2 (Kyba et al. 2025), lamps 25-40 m
 //! apart, street canyons, and a heavy tail of floodlights.
@@ -32,13 +32,21 @@ mod tag;
 mod traffic;
 mod windows;
 
-pub(crate) use buildings::Buildings;
-pub(crate) use bulbs::Bulbs;
-pub(crate) use fields::{Fields, Plan, names};
 #[cfg(feature = "recipe")]
-pub(crate) use fields::{count_wanted, number_wanted, span_wanted};
-pub(crate) use generate::{Grown, generate};
-pub(crate) use lamps::{LampKind, Lamps};
+pub(crate) use fields::{Fields, Plan, count_wanted, names, number_wanted, span_wanted};
+pub use generate::{Grown, generate};
+#[cfg(feature = "recipe")]
 pub(crate) use materials::builtin_materials;
-pub(crate) use plan::City;
-pub(crate) use solid::Solid;
+pub use solid::Solid;
+
+pub use beacons::Beacons;
+pub use buildings::Buildings;
+pub use bulbs::Bulbs;
+pub use floodlights::Floodlights;
+pub use lamps::{LampKind, Lamps};
+pub use moon::Moon;
+pub use plan::City;
+pub use shops::Shops;
+pub use signs::Signs;
+pub use traffic::Traffic;
+pub use windows::Windows;

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// The moon: one directional light.
 #[derive(Clone, Debug)]
-pub(crate) struct Moon {
+pub struct Moon {
     /// Irradiance on a surface that faces it, in lx; a full moon gives about 0.2.
     pub irradiance: f64,
     /// Height over the horizon in degrees.

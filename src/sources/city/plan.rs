@@ -16,7 +16,7 @@ use crate::base::error::{Error, Result};
 
 /// A city. A part that is `None` is left out; without any, bare streets and pavements remain.
 #[derive(Clone, Debug)]
-pub(crate) struct City {
+pub struct City {
     /// How many lights there are: with `density`, the extent. Lit windows make the number exact.
     pub lights: u64,
     /// Lights per km^2 of ground.

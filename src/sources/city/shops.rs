@@ -17,7 +17,7 @@ const PROUD: f64 = 0.125;
 
 /// Shop windows.
 #[derive(Clone, Debug)]
-pub(crate) struct Shops {
+pub struct Shops {
     /// How many on 100 m of facade.
     pub per_100m: f64,
     /// Greatest width in m; narrow walls get narrower panes.

@@ -30,7 +30,7 @@ const COLOURS: [[f32; 3]; 7] = [
 
 /// Signs.
 #[derive(Clone, Debug)]
-pub(crate) struct Signs {
+pub struct Signs {
     /// How many on 100 m of facade.
     pub per_100m: f64,
     /// Share of blades: two emitting faces back to back.

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 /// An axis-aligned box that is filled; corners in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Solid {
+pub struct Solid {
     /// The corner with the least coordinates.
     pub low: Vec3,
     /// The corner with the greatest coordinates.

@@ -19,7 +19,7 @@ const HALF: [f64; 2] = [0.7, 2.2];
 
 /// Cars.
 #[derive(Clone, Debug)]
-pub(crate) struct Traffic {
+pub struct Traffic {
     /// Cars on a kilometre of street.
     pub per_km: f64,
     /// Flux of one headlight in lm.

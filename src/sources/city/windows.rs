@@ -25,7 +25,7 @@ const PALETTE: usize = 24;
 
 /// Lit windows.
 #[derive(Clone, Debug)]
-pub(crate) struct Windows {
+pub struct Windows {
     /// Width in m.
     pub width: f64,
     /// Height in m.

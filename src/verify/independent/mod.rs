@@ -15,7 +15,7 @@
 //! | `importance` | is no triangle left out that can add anything? | `means` |
 //! | `exact-sum` | is the exact image the sum over all lights? | `sums` |
 //!
-//! [`independent`](independent()) makes them all, of any [`Path`]: the program's [`Own`], or a test's wrong one. What
+//! [`independent`](independent()) makes them all, of any [`Path`](path::Path): the program's [`Own`], or a test's wrong one. What
 //! they hold it to is in `geometry` and `light`.
 //!
 //! Shadow rays are traced through every triangle, so their number is bounded (`TESTS` in `geometry`).
