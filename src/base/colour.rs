@@ -27,7 +27,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
 }
 
 /// The inverse of [`srgb_encode`]: encoded `[0, 1]` to linear `[0, 1]`; clamps.
-pub fn srgb_decode(encoded: f32) -> f32 {
+pub(crate) fn srgb_decode(encoded: f32) -> f32 {
     let x = encoded.clamp(0.0, 1.0);
     if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }

@@ -34,7 +34,7 @@ const PLASTIC: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
 
 /// The sequences of one pixel in one run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sequence {
+pub struct Sequence {
     key: RunKey,
     pixel: u32,
     points: Points,
@@ -45,7 +45,7 @@ pub(crate) struct Sequence {
 impl Sequence {
     /// The sequences of a pixel.
     #[inline]
-    pub(crate) fn new(key: RunKey, pixel: u32, points: Points) -> Self {
+    pub fn new(key: RunKey, pixel: u32, points: Points) -> Self {
         let words = [key.seed, u64::from(key.run), u64::from(pixel), u64::from_le_bytes(*b"sequence")];
         let name = if points == Points::Random { 0 } else { hash(&words) };
         Self { key, pixel, points, name }
@@ -53,7 +53,7 @@ impl Sequence {
 
     /// The numbers of one pass.
     #[inline]
-    pub(crate) fn pass(&self, pass: u32) -> Draws {
+    pub fn pass(&self, pass: u32) -> Draws {
         Draws { of: *self, pass, stream: None, index: u64::from(pass) }
     }
 }

@@ -51,7 +51,7 @@ impl Stream {
 
     /// A stream of its own, named by 64 bits of this one.
     #[inline]
-    pub fn split(&mut self) -> Self {
+    pub(crate) fn split(&mut self) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(self.bits()))
     }
 
@@ -86,7 +86,7 @@ impl RunKey {
 
 /// A 64-bit hash of a list of words.
 #[inline]
-pub fn hash(words: &[u64]) -> u64 {
+pub(crate) fn hash(words: &[u64]) -> u64 {
     // An arbitrary odd start, so that an all-zero key does not stay zero.
     words.iter().fold(0x9e37_79b9_7f4a_7c15, |state, &word| mix(state ^ word).wrapping_add(0xd1b5_4a32_d192_ed03))
 }

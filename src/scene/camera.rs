@@ -114,7 +114,7 @@ impl Camera {
     }
 
     /// Unit direction through a point of the film, in pixels from its upper left corner.
-    pub fn direction_through(&self, x: f64, y: f64) -> DVec3 {
+    pub(crate) fn direction_through(&self, x: f64, y: f64) -> DVec3 {
         let across = x / f64::from(self.width) * 2.0 - 1.0;
         let along = y / f64::from(self.height) * 2.0 - 1.0;
         (self.forward + self.right * across + self.down * along).normalize()

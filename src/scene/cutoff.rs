@@ -52,7 +52,7 @@ impl Cutoff {
     }
 
     /// The volumes of some lights of a scene, and the lights that have none: those in range everywhere.
-    pub fn volumes(&self, scene: &Scene, lights: &[LightId]) -> (Vec<(Influence, LightId)>, Vec<LightId>) {
+    pub(crate) fn volumes(&self, scene: &Scene, lights: &[LightId]) -> (Vec<(Influence, LightId)>, Vec<LightId>) {
         let mut everywhere = Vec::new();
         let mut volumes = Vec::with_capacity(lights.len());
         for &id in lights {

@@ -252,7 +252,7 @@ impl Scene {
     }
 
     /// Radius in metres of a sphere around everything.
-    pub(crate) fn radius(&self) -> f32 {
+    pub fn radius(&self) -> f32 {
         let (low, high) = self.bounds();
         0.5 * (high - low).length()
     }

@@ -19,6 +19,18 @@ use crate::scene::receiver::Receiver;
 use std::ops::Range;
 
 /// A sampler of any type: implemented by every [`LightSampler`] and, through [`PerPass`], every [`FrameSampler`].
+///
+/// ```
+/// use citylights::prelude::*;
+/// use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
+///
+/// let stage = Stage::new(Scene::new(citylights::sources::small::sixteen())?, LeaveOut::Yes, Offset::SCALED);
+/// let sampler = Registry::standard().parse("power:picks=3")?.build(BuildContext { stage: &stage, seed: 1 })?;
+/// let mut counts = vec![0.0; stage.scene().lights().len()];
+/// assert!(sampler.expected_counts(&stage.receivers()[0], &mut counts), "they can be told");
+/// assert!((counts.iter().sum::<f32>() - 3.0).abs() < 1e-5, "three picks, among all lights");
+/// # Ok::<(), Error>(())
+/// ```
 pub trait AnySampler: Send + Sync {
     /// Most passes that can be begun together: 1 where there is state of one pass.
     fn most_passes(&self) -> u32 {
@@ -47,12 +59,44 @@ pub fn blocks(sampler: &dyn AnySampler, passes: Range<u32>) -> impl Iterator<Ite
 }
 
 /// A sampler in a block of passes.
+///
+/// ```
+/// use citylights::base::random::RunKey;
+/// use citylights::prelude::*;
+/// use citylights::strategy::{Frame, PickBuffer};
+/// use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
+///
+/// let stage = Stage::new(Scene::new(citylights::sources::small::sixteen())?, LeaveOut::Yes, Offset::SCALED);
+/// let sampler = Registry::standard().parse("power:picks=2")?.build(BuildContext { stage: &stage, seed: 1 })?;
+/// let block = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 1, run: 0 }), 0..8);
+/// let mut picks = PickBuffer::default();
+/// block.worker(false).fill(&stage.receivers()[..5], 0..8, true, &mut picks);
+/// assert_eq!(picks.calls().count(), 5 * 8, "one call for each receiver and pass");
+/// assert!(picks.calls().all(|call| call.len() == 2), "two lights in each");
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Block: Send + Sync {
     /// A worker with its own scratch, one a thread, that counts its work or does not.
     fn worker(&self, counting: bool) -> Box<dyn Worker + '_>;
 }
 
 /// What samples a sampler on one thread.
+///
+/// ```
+/// use citylights::base::random::RunKey;
+/// use citylights::prelude::*;
+/// use citylights::strategy::{Frame, PickBuffer};
+/// use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
+///
+/// let stage = Stage::new(Scene::new(citylights::sources::small::sixteen())?, LeaveOut::Yes, Offset::SCALED);
+/// let sampler = Registry::standard().parse("intensity")?.build(BuildContext { stage: &stage, seed: 1 })?;
+/// let block = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 1, run: 0 }), 0..8);
+/// let mut worker = block.worker(true);
+/// worker.fill(&stage.receivers()[..1], 0..8, true, &mut PickBuffer::default());
+/// let lights = stage.lights().len() as u64;
+/// assert_eq!(worker.work().weighed, lights, "each light is weighed once, on arrival, and not in each pass");
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Worker {
     /// Fills `out` with the picks of receivers of the frame in passes of the block: all passes of one receiver
     /// together.

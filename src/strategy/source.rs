@@ -9,6 +9,25 @@ use crate::scene::receiver::Receiver;
 use std::any::Any;
 
 /// A sampler of any type, called from within another. `scratch` is what its own [`scratch`](Self::scratch) made.
+///
+/// ```
+/// use citylights::base::{draws::{Points, Sequence}, random::RunKey};
+/// use citylights::prelude::*;
+/// use citylights::visibility::{offset::Offset, stage::{LeaveOut, Stage}};
+///
+/// let stage = Stage::new(Scene::new(citylights::sources::small::sixteen())?, LeaveOut::Yes, Offset::SCALED);
+/// let sampler = Registry::standard().parse("power")?.build(BuildContext { stage: &stage, seed: 1 })?;
+/// let source = sampler.source().expect("it chooses at one receiver, without a view of the frame");
+/// let (at, mut scratch) = (&stage.receivers()[0], source.scratch());
+/// source.arrive(at, &mut *scratch, None);
+/// let mut candidates = Vec::new();
+/// let mut draws = Sequence::new(RunKey { seed: 1, run: 0 }, at.pixel, Points::R2).pass(0);
+/// for call in 0..4 {
+///     draws.nested(call, 4, |draws| source.sample(at, draws, &mut *scratch, None, &mut candidates));
+/// }
+/// assert_eq!(candidates.len(), 4);
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Source: Send + Sync {
     /// New scratch.
     fn scratch(&self) -> Box<dyn Any + Send>;

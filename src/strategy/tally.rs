@@ -5,6 +5,22 @@
 use crate::base::counts::Counts;
 
 /// Counts the work of choosing.
+///
+/// ```
+/// use citylights::base::counts::Counts;
+/// use citylights::prelude::*;
+///
+/// fn strongest<T: Tally>(lights: &[Light], tally: &mut T) -> Option<usize> {
+///     tally.weighed(lights.len() as u64);
+///     (0..lights.len()).max_by(|&a, &b| luminance(lights[a].flux(1.0)).total_cmp(&luminance(lights[b].flux(1.0))))
+/// }
+///
+/// let scene = Scene::new(citylights::sources::small::sixteen())?;
+/// let mut counted = Counts::default();
+/// assert_eq!(strongest(scene.lights(), &mut counted), strongest(scene.lights(), &mut Uncounted));
+/// assert_eq!((counted.weighed, Uncounted.work().weighed), (16, 0));
+/// # Ok::<(), Error>(())
+/// ```
 pub trait Tally: Default + Send {
     /// Whether it counts at all; if not, a sampler within another need not count either.
     const COUNTS: bool;
