@@ -2,10 +2,8 @@
 
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test file uses a part of this module")]
 
-#[cfg(feature = "gltf")]
-pub mod gltf;
-#[cfg(feature = "gltf")]
-pub mod refused;
+#[cfg(feature = "measure")]
+pub mod alone;
 
 use citylights::base::random::{RunKey, Stream};
 use citylights::render::film::Film;
