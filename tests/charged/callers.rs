@@ -2,6 +2,7 @@
 #![cfg(feature = "study")]
 
 use crate::common::{sixteen, stage};
+use crate::{quiet, spin};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::RunKey;
@@ -25,9 +26,7 @@ use citylights::visibility::stage::{LeaveOut, Stage};
 use cpu_time::ThreadTime;
 use glam::Vec3;
 use rayon::prelude::*;
-use std::hint::black_box;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rounds of [`spin`] of a build, and of an arrival.
@@ -35,11 +34,6 @@ const BUILD: u64 = 6_000_000;
 const ARRIVAL: u64 = 300_000;
 /// Receivers that are arrived at.
 const RECEIVERS: usize = 24;
-
-/// Keeps a processor busy.
-fn spin(rounds: u64) {
-    black_box((0..rounds).fold(1, |x: u64, i| black_box(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i))));
-}
 
 /// Does `work` as the engine does a unit.
 fn alone<T: Send>(work: impl FnOnce(Meter<'_>) -> T + Send) -> T {
@@ -129,9 +123,6 @@ fn busy(name: &str) -> Configured {
     registry.parse(name).expect("a name of this test")
 }
 
-/// What the process's clock sees must be of one test alone.
-static ALONE: Mutex<()> = Mutex::new(());
-
 const KEY: RunKey = RunKey { seed: 1, run: 0 };
 
 /// CPU seconds of set-up and of sampling that a caller finds for one block of one pass.
@@ -181,7 +172,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
-    let _alone = ALONE.lock();
+    let _quiet = quiet();
     let stage = stage(sixteen());
     let (target, truth) = few(&stage, RECEIVERS);
     let strategy = busy("together");
@@ -210,7 +201,7 @@ fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
 
 #[test]
 fn work_on_a_thread_of_its_own_is_found() {
-    let _alone = ALONE.lock();
+    let _quiet = quiet();
     let stage = stage(sixteen());
     let context = BuildContext { stage: &stage, seed: build_seed(KEY) };
     for (name, wanted) in [("together", 0.0..0.1), ("own-thread", 0.8..1.0)] {
@@ -221,8 +212,8 @@ fn work_on_a_thread_of_its_own_is_found() {
 }
 
 /// Callers on a scene of `scenes/` against a clock around the build in a pool of one thread; lines of a table, and the
-/// greatest ratio of those that take long enough to be told.
-fn setups(scene: &str, rounds: usize) -> f64 {
+/// greatest ratio of those that take long enough to be told, if any does.
+fn setups(scene: &str, rounds: usize) -> Option<f64> {
     let stage = scene_stage(scene);
     let (target, truth) = few(&stage, 8);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
@@ -236,7 +227,7 @@ fn setups(scene: &str, rounds: usize) -> f64 {
             spent
         })
     };
-    let mut worst: f64 = 1.0;
+    let mut worst: Option<f64> = None;
     println!("{scene}: set-up in ms, and over that: {}", CALLERS.map(|(name, _)| name).join(", "));
     for info in Registry::standard().infos() {
         let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
@@ -258,7 +249,7 @@ fn setups(scene: &str, rounds: usize) -> f64 {
         );
         // Below a fifth of a millisecond it is the clock, the allocator and its page faults that are timed.
         if least[0] > 2e-4 {
-            worst = ratios.iter().fold(worst, |worst, ratio| worst.max(*ratio).max(1.0 / ratio));
+            worst = Some(ratios.iter().fold(worst.unwrap_or(1.0), |worst, ratio| worst.max(*ratio).max(1.0 / ratio)));
         }
     }
     worst
@@ -268,9 +259,9 @@ fn setups(scene: &str, rounds: usize) -> f64 {
 #[test]
 #[ignore = "a minute, and only on a machine that does nothing else"]
 fn every_caller_finds_the_same_set_up() {
-    let _alone = ALONE.lock();
+    let _quiet = quiet();
     for scene in ["downtown", "metropolis"] {
-        let worst = setups(scene, 9);
+        let worst = setups(scene, 9).expect("a set-up that takes long enough");
         assert!(worst <= 1.15, "{scene}: a caller is {worst:.3} off the others");
     }
 }

@@ -1,19 +1,17 @@
-//! One engine times everything, plans do not follow the machine, and whatever a unit starts is on its clock.
+//! One engine times everything, and plans do not follow the machine.
 #![cfg(feature = "measure")]
 
 use crate::common::alone::Alone;
 use crate::common::{sixteen, stage};
-use citylights::base::random::RunKey;
-use citylights::measure::clock::{Clock, Cpu, Spent};
+use citylights::measure::clock::{Clock, Cpu};
 use citylights::measure::compare::{Compared, ComparisonOptions, compare};
-use citylights::measure::engine::{Block, Engine};
+use citylights::measure::engine::Engine;
 use citylights::measure::image_store::ImageStore;
 use citylights::measure::observer::Unobserved;
 use citylights::measure::plan::Budget;
 use citylights::record::store::RowWriter;
 use citylights::record::{Row, SceneRecord};
 use citylights::strategy::Registry;
-use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -137,117 +135,4 @@ fn units_come_in_an_order_that_the_seed_decides() {
     let mut sorted = other;
     sorted.sort_unstable();
     assert_eq!(sorted, (0..40).collect::<Vec<_>>());
-}
-
-/// Keeps a processor busy; gives something that cannot be left out.
-fn spin(rounds: u64) -> u64 {
-    (0..rounds).fold(1, |x: u64, i| std::hint::black_box(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i)))
-}
-
-fn work(rounds: u64) {
-    std::hint::black_box(spin(rounds));
-}
-
-const ROUNDS: u64 = 2_000_000;
-
-#[test]
-fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
-    let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
-    let plain = || (0..4).for_each(|_| work(ROUNDS));
-    let scope = || rayon::scope(|scope| (0..4).for_each(|_| scope.spawn(|_| work(ROUNDS))));
-    let join = || {
-        rayon::join(|| work(2 * ROUNDS), || work(2 * ROUNDS));
-    };
-    let iterator = || (0..4).into_par_iter().for_each(|_| work(ROUNDS));
-    let spawn = || {
-        static DONE: AtomicU64 = AtomicU64::new(0);
-        DONE.store(0, Ordering::SeqCst);
-        for _ in 0..4 {
-            rayon::spawn(|| {
-                work(ROUNDS);
-                DONE.fetch_add(1, Ordering::SeqCst);
-            });
-        }
-        while DONE.load(Ordering::SeqCst) < 4 {
-            rayon::yield_now();
-        }
-    };
-    let ways: [(&str, &(dyn Fn() + Sync)); 5] =
-        [("plain", &plain), ("scope", &scope), ("join", &join), ("par_iter", &iterator), ("spawn", &spawn)];
-    let mut times = vec![Vec::new(); ways.len()];
-    // A way with a static of its own must not run beside itself.
-    let one = Engine { workers: 1, ..engine };
-    let units: Vec<usize> = (0..9 * ways.len()).map(|unit| unit % ways.len()).collect();
-    one.run(
-        "ways",
-        &units,
-        &Unobserved,
-        |&way, meter| Ok(meter.time(ways[way].1).1),
-        |&way, spent: Spent| {
-            times[way].push(spent.cpu);
-            Ok(())
-        },
-    )
-    .expect("done");
-    let median = |times: &[f64]| {
-        let mut sorted = times.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted[sorted.len() / 2]
-    };
-    let known = median(&times[0]);
-    for ((name, _), times) in ways.iter().zip(&times) {
-        let share = median(times) / known;
-        assert!((0.9..=1.1).contains(&share), "{name} is charged {share:.3} of its work");
-    }
-}
-
-#[test]
-fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
-    let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
-    let stray = || {
-        let thread = std::thread::spawn(|| work(20 * ROUNDS));
-        thread.join().expect("done");
-    };
-    let account = engine
-        .run(
-            "stray",
-            &[(), ()],
-            &Unobserved,
-            |(), _| {
-                stray();
-                Ok(())
-            },
-            |(), ()| Ok(()),
-        )
-        .expect("done");
-    assert!(account.stray_share() > 0.8, "{account:?}");
-    let account = engine
-        .run(
-            "own",
-            &[(), ()],
-            &Unobserved,
-            |(), _| {
-                work(20 * ROUNDS);
-                Ok(())
-            },
-            |(), ()| Ok(()),
-        )
-        .expect("done");
-    // Other tests of this process run beside this one.
-    println!("without: {account:?}");
-}
-
-#[test]
-fn a_block_pays_for_arrival_once() {
-    let stage = stage(sixteen());
-    let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
-    let strategy = Registry::standard().parse("intensity").expect("a strategy");
-    let key = RunKey { seed: 1, run: 0 };
-    let image = |passes| {
-        let block = Block { stage: &stage, receivers: stage.receivers(), strategy: &strategy, key, passes };
-        engine.alone(|meter| block.run(meter)).expect("a pool").expect("an image").image
-    };
-    let (few, many) = (image(4), image(16));
-    assert_ne!(few, many);
-    assert_eq!(few, image(4));
 }

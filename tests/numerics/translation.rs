@@ -1,7 +1,7 @@
 //! Promise: where a scene stands and how large it is changes nothing but what rounding its numbers changes.
 #![cfg(feature = "study")]
 
-use crate::common::{bits, image, stage_with};
+use crate::common::{bits, digest, image, stage_with};
 use citylights::base::statistics::Moments;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
@@ -86,12 +86,6 @@ albedo = [0.4, 0.2, 0.1]
 
 fn read(shift: DVec3, scale: f64) -> Scene {
     parse(&recipe(shift, scale), Path::new("corner.toml"), &Overrides::default()).expect("a recipe")
-}
-
-fn digest(scene: &Scene) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    scene.digest(|part| bytes.extend_from_slice(part));
-    bytes
 }
 
 fn whole(scene: Scene) -> Stage {

@@ -1,5 +1,6 @@
 //! What the city generator promises: equal bytes everywhere, exact counts, the degeneracies and gaps of real cities.
 
+use crate::common::digest;
 use citylights::base::colour::luminance;
 use citylights::scene::camera::Camera;
 use citylights::scene::light::Shape;
@@ -9,7 +10,6 @@ use citylights::sources::city::{
     generate,
 };
 use glam::{DVec3, Vec3};
-use std::hash::{DefaultHasher, Hasher};
 
 /// A city with every part.
 fn everything(lights: u64) -> City {
@@ -48,12 +48,6 @@ fn scene(grown: Grown) -> Scene {
         notes: grown.notes,
     })
     .expect("a generated city is a valid scene")
-}
-
-fn digest(scene: &Scene) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    scene.digest(|bytes| hasher.write(bytes));
-    hasher.finish()
 }
 
 fn group<'a>(grown: &'a Grown, name: &str) -> &'a [Shape] {
@@ -272,17 +266,16 @@ fn surfaces_of_a_building_look_outwards() {
     assert_eq!(walls, 10 * grown.solids.len());
 }
 
+#[cfg(feature = "measure")]
 #[test]
-fn a_million_lights_grow_at_once() {
-    for lights in [100_000, 1_000_000] {
-        let start = std::time::Instant::now();
+fn a_million_lights_grow_in_about_ten_times_the_time_of_a_hundred_thousand() {
+    use crate::common::{IN_PROPORTION, times_as_long};
+    let grown = |lights: u64| {
         let grown = grow(&everything(lights), 13);
-        let seconds = start.elapsed().as_secs_f64();
-        println!("{lights} lights, {} surfaces in {seconds:.2} s", grown.surfaces.len());
         assert!(lights - grown.lights.len() as u64 <= 1, "{} lights", grown.lights.len());
-        // Five times the 2 s that two free cores need at most: the machine may be busy.
-        assert!(cfg!(debug_assertions) || seconds < 10.0, "{lights} lights took {seconds} s");
-    }
+    };
+    let ratio = times_as_long(|| grown(1_000_000), || grown(100_000));
+    assert!(ratio < IN_PROPORTION, "{ratio} times as long");
 }
 
 #[test]

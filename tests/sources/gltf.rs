@@ -2,8 +2,8 @@
 //! as it says.
 #![cfg(feature = "gltf")]
 
-use crate::common::{ALBEDO, receiver, stage};
-use crate::made::{File, digest};
+use crate::common::{ALBEDO, digest, lambert, receiver, stage};
+use crate::made::File;
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
 use citylights::scene::camera::Camera;
@@ -329,18 +329,6 @@ fn a_directional_light_gives_its_lux_times_the_cosine() {
     let wanted = Vec3::new(0.75f32.sqrt(), 0.0, 0.5);
     assert!((towards - wanted).length() < 1e-6, "{towards} for {wanted}");
     near(irradiance(&scene, Vec3::new(1.0, 2.0, 0.0), Vec3::Z), 0.25 * 0.5, 1e-6);
-}
-
-/// Irradiance of a polygon of unit radiance that lies wholly above the horizon of `normal` at `x`: Lambert 1760, by the
-/// vector irradiance of its edges.
-fn lambert(corners: [Vec3; 3], x: Vec3, normal: Vec3) -> f64 {
-    let unit = corners.map(|c| (c - x).as_dvec3().normalize());
-    let edge = |i: usize| {
-        let (a, b) = (unit[i], unit[(i + 1) % 3]);
-        let cross = a.cross(b);
-        cross.length().atan2(a.dot(b)) * cross.normalize().dot(normal.as_dvec3())
-    };
-    0.5 * (0..3).map(edge).sum::<f64>().abs()
 }
 
 #[test]

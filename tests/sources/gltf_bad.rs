@@ -2,10 +2,10 @@
 //! memory.
 #![cfg(feature = "cli")]
 
+use crate::common::{IN_PROPORTION, times_as_long};
 use crate::made::File;
 use crate::refused::{check, good, refused};
 use serde_json::{Value, json};
-use std::time::{Duration, Instant};
 
 /// A good file with one value of its JSON set.
 fn with(pointer: &str, value: Value) -> File {
@@ -275,18 +275,20 @@ fn cycles_of_any_length_are_found() {
 
 #[test]
 fn a_hundred_thousand_nodes_deep_is_no_trouble() {
-    let mut file = good();
-    let first = file.json["nodes"].as_array().expect("a list").len();
-    let depth = 100_000;
-    for i in 0..depth {
-        file.push("nodes", json!({ "children": [first + i + 1], "translation": [0, 1e-4, 0] }));
-    }
-    file.push("nodes", json!({ "mesh": 0 }));
-    file.json["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(first));
-    let start = Instant::now();
-    let scene = file.scene();
-    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
-    assert!((scene.surfaces()[2].corners[0].z - 10.0).abs() < 1e-5);
+    let deep = |depth: usize| {
+        let mut file = good();
+        let first = file.json["nodes"].as_array().expect("a list").len();
+        for i in 0..depth {
+            file.push("nodes", json!({ "children": [first + i + 1], "translation": [0, 1e-4, 0] }));
+        }
+        file.push("nodes", json!({ "mesh": 0 }));
+        file.json["scenes"][0]["nodes"].as_array_mut().expect("a list").push(json!(first));
+        file
+    };
+    let [shallow, deep] = [10_000, 100_000].map(deep);
+    assert!((deep.scene().surfaces()[2].corners[0].z - 10.0).abs() < 1e-5);
+    let ratio = times_as_long(|| drop(deep.scene()), || drop(shallow.scene()));
+    assert!(ratio < IN_PROPORTION, "{ratio} times as long for ten times the depth");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Promise: a glTF file goes wherever a scene goes, in each of its containers, and what is not used in it is told.
 #![cfg(feature = "cli")]
 
-use crate::made::{File, digest};
+use crate::common::digest;
+use crate::made::File;
 use assert_cmd::Command;
 use citylights::scene::Scene;
 use citylights::scene::light::Kind;

@@ -190,10 +190,3 @@ pub(crate) fn glb(json: &[u8], bin: &[u8]) -> Vec<u8> {
     out[8..12].copy_from_slice(&length.to_le_bytes());
     out
 }
-
-/// What decides the image, as text to compare.
-pub(crate) fn digest(scene: &Scene) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    scene.digest(|more| bytes.extend(more));
-    bytes
-}

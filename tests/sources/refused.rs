@@ -7,7 +7,6 @@ use citylights::sources::Overrides;
 use citylights::sources::gltf::parse;
 use serde_json::json;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 /// A ground, a child node, an emitter and two lamps.
 pub(crate) fn good() -> File {
@@ -21,10 +20,9 @@ pub(crate) fn good() -> File {
 
 /// Reads a file in memory; its error's field and message.
 pub(crate) fn refused(name: &str, bytes: &[u8]) -> (String, String) {
-    let start = Instant::now();
-    let result = parse(bytes, name.as_ref(), &Overrides::default());
-    // The longest take two seconds on an idle core.
-    assert!(start.elapsed() < Duration::from_secs(30), "{name} took {:?}", start.elapsed());
+    let (held, result) = crate::peak::most(|| parse(bytes, name.as_ref(), &Overrides::default()));
+    // Two million nodes of three bytes each take sixty times as much.
+    assert!(held < 100 * bytes.len() + (1 << 20), "{name}: {held} bytes for {} of the file", bytes.len());
     match result {
         Err(Error::Input { file, field, message, .. }) => {
             assert_eq!(file, Path::new(name));

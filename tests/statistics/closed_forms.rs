@@ -1,6 +1,6 @@
 //! Known answers: lamps, cones, polygons and the moon against formulas on paper.
 
-use crate::common::{ALBEDO, cuboid, ground, moon, panel, point, receiver, stage, stage_with};
+use crate::common::{ALBEDO, cuboid, ground, lambert, moon, panel, point, receiver, stage, stage_with};
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
 use citylights::scene::light::{Light, Shape, cone_flux};
@@ -8,7 +8,7 @@ use citylights::scene::light_sampling::LightSampling;
 use citylights::shading::contribution::contribution;
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::f64::consts::PI;
 
 fn radiance(stage: &Stage, position: Vec3, normal: Vec3, points: u32) -> f64 {
@@ -52,18 +52,6 @@ fn a_box_throws_the_moons_shadow_and_the_moon_shines_beside_it() {
     }
 }
 
-/// Irradiance of a polygon of unit radiance that lies wholly above the horizon of `normal` at `x`: Lambert 1760, by the
-/// vector irradiance of its edges.
-fn lambert(corners: [DVec3; 3], x: DVec3, normal: DVec3) -> f64 {
-    let unit = corners.map(|c| (c - x).normalize());
-    let edge = |i: usize| {
-        let (a, b) = (unit[i], unit[(i + 1) % 3]);
-        let cross = a.cross(b);
-        cross.length().atan2(a.dot(b)) * cross.normalize().dot(normal)
-    };
-    0.5 * (0..3).map(edge).sum::<f64>().abs()
-}
-
 #[test]
 fn a_triangle_gives_what_lamberts_polygon_formula_says() {
     // A horizontal panel 6 m up that shines down, and a vertical window that shines along +x, both seen by the ground
@@ -78,8 +66,7 @@ fn a_triangle_gives_what_lamberts_polygon_formula_says() {
             for x in [0.5f32, 2.0, 5.0, 12.0, 25.0, 40.0] {
                 let at = Vec3::new(x, 0.7, 0.0);
                 let found = radiance(&stage, at, Vec3::Z, 40_000);
-                let corners = corners.map(Vec3::as_dvec3);
-                let wanted = f64::from(ALBEDO) / PI * 10.0 * lambert(corners, at.as_dvec3(), DVec3::Z);
+                let wanted = f64::from(ALBEDO) / PI * 10.0 * lambert(corners, at, Vec3::Z);
                 assert!(
                     (found / wanted - 1.0).abs() < 1e-3,
                     "{what}, offset {name}, {x} m away: {found} for {wanted}, ratio {}",
