@@ -7,8 +7,8 @@ use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::RunKey;
+use citylights::scene::Scene;
 use citylights::scene::receiver::Receiver;
-use citylights::scene::{Parts, Scene};
 use citylights::shading::importance::importance;
 use citylights::strategy::{
     AnySampler, Arguments, Block, BuildContext, Claim, Frame, Info, LightSampler, Picks, Registry, Role, Strategy,
@@ -192,16 +192,4 @@ fn weights_that_are_no_numbers_or_negative_are_a_failed_check_and_no_panic() {
         assert_eq!(failed(&mutants(), name, &stage), ["weights-finite"], "{name}");
     }
     assert_eq!(failed(&mutants(), "beyond", &stage), ["ids"]);
-}
-
-#[test]
-fn no_strategy_repeats_itself_or_asks_who_arrived_first() {
-    let few = Parts { lights: sixteen().lights[..1].to_vec(), ..sixteen() };
-    for stage in [stage(sixteen()), stage(few)] {
-        for info in Registry::standard().infos() {
-            let failed = failed(&Registry::standard(), info.name, &stage);
-            let ours = |name: &&str| ["another-seed", "arrival-order"].contains(name);
-            assert!(!failed.iter().any(ours), "{}: {failed:?}", info.name);
-        }
-    }
 }

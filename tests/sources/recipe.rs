@@ -1,6 +1,7 @@
 //! What a recipe promises: every mistake is told with file, line, field and what would be right; nothing panics.
 #![cfg(feature = "recipe")]
 
+use crate::common::digest;
 use citylights::base::error::Error;
 use citylights::scene::Scene;
 use citylights::scene::cutoff::{Cutoff, Transfer};
@@ -11,8 +12,6 @@ use citylights::strategy::{BuildContext, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
-use proptest::prelude::*;
-use std::hash::{DefaultHasher, Hasher};
 use std::path::Path;
 
 /// A small recipe with every table; line numbers of the cases below count in it.
@@ -107,12 +106,6 @@ material = "asphalt"
 
 fn read(text: &str) -> Result<Scene, Error> {
     parse(text, Path::new("test.toml"), &Overrides::default())
-}
-
-fn digest(scene: &Scene) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    scene.digest(|bytes| hasher.write(bytes));
-    hasher.finish()
 }
 
 /// Asserts that a text is refused at a line and field, with some words.
@@ -365,128 +358,4 @@ fn files_that_cannot_be_read_are_told() {
     let error = load(&latin, &Overrides::default()).expect_err("not UTF-8");
     assert!(error.to_string().contains("latin.toml:2: is not UTF-8"), "{error}");
     assert!(load(folder.path(), &Overrides::default()).is_err(), "a folder is not a recipe");
-}
-
-#[test]
-fn the_shipped_recipes_are_what_their_comments_say() {
-    let load = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).with_extension("toml");
-        load(&path, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
-    };
-    let count = |scene: &Scene, kind: Kind| scene.lights().iter().filter(|light| light.kind() == kind).count();
-    let first = load("first-night");
-    assert!(first.lights().len() >= 900 && first.camera().resolution() == (160, 90));
-    assert!(Kind::ALL.iter().all(|&kind| count(&first, kind) > 0), "every kind of light");
-    let downtown = load("downtown");
-    assert!((9_999..=10_000).contains(&downtown.lights().len()) && count(&downtown, Kind::Directional) == 0);
-    let lamps = load("lamps-only");
-    assert_eq!(count(&lamps, Kind::Point), lamps.lights().len());
-    assert!(lamps.surfaces().len() > 1_000);
-    let moonlit = load("moonlit");
-    assert!(count(&moonlit, Kind::Directional) == 1 && count(&moonlit, Kind::Triangle) == 0);
-    let stadium = load("stadium");
-    let mut flux: Vec<f32> = stadium.lights().iter().map(|light| light.flux(1.0).element_sum()).collect();
-    flux.sort_by(f32::total_cmp);
-    let (all, few): (f32, f32) = (flux.iter().sum(), flux[flux.len() - 24..].iter().sum());
-    assert!(few > 0.3 * all, "24 of {} lights have {} of the flux", flux.len(), few / all);
-    let lights = |name: &str| load(name).lights().len();
-    assert!((99_999..=100_000).contains(&lights("metropolis")));
-    assert!((999_999..=1_000_000).contains(&lights("megacity")));
-}
-
-#[test]
-fn nothing_occludes_on_the_plaza() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/plaza.toml");
-    let scene = load(&path, &Overrides::default()).expect("a shipped recipe");
-    assert!((4_000..=10_000).contains(&scene.lights().len()));
-    for surface in scene.surfaces() {
-        let [a, b, c] = surface.corners;
-        let normal = (b - a).cross(c - a).normalize();
-        let in_front = |p: Vec3| normal.dot(p - a);
-        assert!(in_front(scene.camera().position()) > 0.0);
-        for light in scene.lights() {
-            let (Shape::Point { position, .. } | Shape::Spot { position, .. }) = light.shape() else {
-                panic!("{light:?} would occlude")
-            };
-            assert!(in_front(position) > 0.05, "{light:?} stands behind {surface:?}");
-        }
-        let corners = scene.surfaces().iter().flat_map(|other| other.corners);
-        assert!(corners.map(in_front).all(|d| d > -1e-3), "the room is convex: {surface:?}");
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 4_000, ..ProptestConfig::default() })]
-
-    /// Bytes are replaced, dropped and doubled, whole lines too, and numbers become extreme ones; whatever comes out is
-    /// a scene or an error.
-    #[test]
-    fn mutated_recipes_never_panic(
-        edits in prop::collection::vec((any::<prop::sample::Index>(), 0u8..10, any::<u8>()), 1..6),
-    ) {
-        let mut bytes = GOOD.replace("[city.buildings]", MORE_NUMBERS).into_bytes();
-        for (place, kind, byte) in edits {
-            if !bytes.is_empty() {
-                mutate(&mut bytes, place, kind, usize::from(byte));
-            }
-        }
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        // A digit more can ask for a large city, which is allowed but slow to make four thousand times.
-        let small = text.lines().filter(|line| line.contains("lights")).all(|line| {
-            line.bytes().filter(u8::is_ascii_digit).count() <= 4 && !line.contains(['e', 'E', 'x'])
-        });
-        if small && let Err(error) = read(&text) {
-            prop_assert!(!error.to_string().is_empty());
-        }
-    }
-}
-
-/// Further numbers of a city for the mutations to hit.
-const MORE_NUMBERS: &str = "density = 10600
-squares = 0.2
-street = [14, 20]
-block = [80, 120]
-pavement = 3.5
-[city.buildings]
-height = 20
-spread = 0.5
-lot = 28
-gaps = 0.1
-tallest = 100";
-
-/// One small damage at a place.
-fn mutate(bytes: &mut Vec<u8>, place: prop::sample::Index, kind: u8, byte: usize) {
-    const EXTREMES: [&str; 12] = [
-        "0",
-        "-1",
-        "-0.0",
-        "nan",
-        "inf",
-        "1e308",
-        "5e-324",
-        "0.1",
-        "89.9999999",
-        "1e7",
-        "18446744073709551616",
-        "true",
-    ];
-    let at = place.index(bytes.len());
-    let line_end = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |i| at + i);
-    match kind {
-        0 => bytes[at] = byte as u8,
-        1 => drop(bytes.drain(at..line_end)),
-        2 => bytes.insert(at, b"0123456789.-e[]\"=\nx,"[byte % 20]),
-        3 => drop(bytes.remove(at)),
-        4 => {
-            let copy = bytes[at..line_end].to_vec();
-            bytes.splice(at..at, copy);
-        }
-        _ => {
-            let part = |b: &u8| b.is_ascii_digit() || *b == b'.' || *b == b'-';
-            let Some(start) = bytes[at..].iter().position(part).map(|i| at + i) else { return };
-            let end = bytes[start..].iter().position(|b| !part(b)).map_or(bytes.len(), |i| start + i);
-            let new = if kind < 8 { EXTREMES[byte % 12].to_owned() } else { byte.to_string() };
-            bytes.splice(start..end, new.into_bytes());
-        }
-    }
 }

@@ -2,14 +2,14 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{bits, expected, image, point, sixteen, stage_with};
+use crate::common::{bits, digest, expected, image, point, sixteen, stage_with};
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::{Parts, Scene};
 use citylights::sources::small;
-use citylights::strategy::{Claim, Registry};
+use citylights::strategy::Registry;
 use citylights::verify::metamorphic::{Copies, Metamorphic};
-use citylights::verify::{Check, Verifier, VerifyOptions};
+use citylights::verify::{Check, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
@@ -73,45 +73,12 @@ fn no_change_that_changes_nothing_changes_a_city() {
     );
 }
 
-/// Every light on its own: a table of the same lights in parts must not brighten or darken anything.
-#[test]
-fn a_lamp_split_into_ten_leaves_the_expected_image() {
-    let mut parts = sixteen();
-    let tenth = |light: Shape| match light {
-        Shape::Spot { position, axis, intensity, cos_inner, cos_outer } => {
-            Shape::Spot { position, axis, intensity: intensity * 0.1, cos_inner, cos_outer }
-        }
-        other => other,
-    };
-    // The strongest lamp of all.
-    let lamp = tenth(parts.lights[8]);
-    parts.lights[8] = lamp;
-    parts.lights.extend([lamp; 9]);
-    let (whole, split) = (whole(sixteen()), whole(parts));
-    let options = VerifyOptions { receivers: 8, draws: 5_000, seed: 3, ..VerifyOptions::default() };
-    let (before, after) = (Verifier::new(&whole, options), Verifier::new(&split, options));
-    for (a, b) in before.truths().iter().zip(after.truths()) {
-        assert!((a.total() - b.total()).abs() <= 0.02 * a.total(), "{} and {}", a.total(), b.total());
-    }
-    for info in Registry::standard().infos().filter(|info| info.claim == Claim::Unbiased) {
-        let strategy = Registry::standard().parse(info.name).expect("a name of the registry");
-        let checks = after.verify(&strategy).expect("a sampler");
-        let failed: Vec<String> = checks.iter().filter(|c| !c.passed).map(ToString::to_string).collect();
-        assert!(failed.is_empty(), "{}: {failed:?}", strategy.name());
-    }
-}
-
 #[test]
 fn moving_the_origin_changes_no_byte() {
     let mut parts = sixteen();
     let before = Scene::new(parts.clone()).expect("a scene");
     parts.origin = DVec3::new(1e6, -3e5, 1e3);
     let after = Scene::new(parts.clone()).expect("a scene");
-    let digest = |scene: &Scene| {
-        let mut bytes = Vec::new();
-        scene.digest(|part| bytes.extend_from_slice(part));
-        bytes
-    };
     assert_eq!(digest(&before), digest(&after));
     for name in ["all", "power", "influence-tail"] {
         assert_eq!(bits(&image(name, &whole(sixteen()), 3)), bits(&image(name, &whole(parts.clone()), 3)), "{name}");
