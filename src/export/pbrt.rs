@@ -4,7 +4,7 @@
 //! radiance in the scene's own unit. One file: triangles stand in it as numbers, surfaces by material, lights by
 //! radiance; there each emissive triangle is a light of its own. pbrt's spot falls off as the smoothstep in the
 //! cosine; its cones are chosen so that the flux is equal, and what is left is said. Not rendered with pbrt here:
-//! a strict reader in `tests/export.rs` checks the file.
+//! a strict reader in `tests/exchange/export.rs` checks the file.
 //!
 //! Source: pbrt-v4, the input file format; Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 2023,
 //! sections 5.4 and 12.

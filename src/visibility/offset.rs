@@ -65,7 +65,7 @@ impl Offset {
     /// moon.
     ///
     /// It is aimed from where it starts. Shifted as a whole instead, it would cross a light's own plane short of its
-    /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/closed_forms.rs`). Lengths are
+    /// end by push / cosine: a panel was dark from 57 degrees off its axis on (`tests/statistics/closed_forms.rs`). Lengths are
     /// those from the receiver, which differ from those from the origin by the push at most.
     #[inline]
     pub fn segment(&self, at: &Receiver, light: &Light, direction: Vec3, distance: f32) -> Segment {

@@ -1,7 +1,5 @@
 //! A clock for comparisons that tests run beside one another.
 
-#![allow(dead_code, unreachable_pub, reason = "each test file uses a part of this module")]
-
 use citylights::measure::clock::{Clock, Cpu};
 
 /// The machine's clocks, but for a process in which nothing else runs: other tests do.

@@ -2,12 +2,12 @@
 
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test file uses a part of this module")]
 
-#[cfg(feature = "gltf")]
-pub mod gltf;
-#[cfg(feature = "gltf")]
-pub mod refused;
+#[cfg(feature = "measure")]
+pub mod alone;
 
 use citylights::base::random::{RunKey, Stream};
+#[cfg(feature = "measure")]
+use citylights::measure::{clock::Cpu, engine::Engine};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::receiver::Receiver;
@@ -53,6 +53,25 @@ pub fn image(strategy: &str, stage: &Stage, passes: u32) -> Vec<Vec3> {
     film.image()
 }
 
+/// What decides the image, as text to compare.
+pub fn digest(scene: &Scene) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    scene.digest(|more| bytes.extend(more));
+    bytes
+}
+
+/// Irradiance of a polygon of unit radiance that lies wholly above the horizon of `normal` at `x`: Lambert 1760, by the
+/// vector irradiance of its edges.
+pub fn lambert(corners: [Vec3; 3], x: Vec3, normal: Vec3) -> f64 {
+    let unit = corners.map(|c| (c.as_dvec3() - x.as_dvec3()).normalize());
+    let edge = |i: usize| {
+        let (a, b) = (unit[i], unit[(i + 1) % 3]);
+        let cross = a.cross(b);
+        cross.length().atan2(a.dot(b)) * cross.normalize().dot(normal.as_dvec3())
+    };
+    0.5 * (0..3).map(edge).sum::<f64>().abs()
+}
+
 /// A direction uniform over the sphere.
 pub fn on_sphere(stream: &mut Stream) -> Vec3 {
     let z = stream.uniform64() * 2.0 - 1.0;
@@ -65,3 +84,19 @@ pub fn on_sphere(stream: &mut Stream) -> Vec3 {
 pub fn bits(image: &[Vec3]) -> Vec<[u32; 3]> {
     image.iter().map(|rgb| rgb.to_array().map(f32::to_bits)).collect()
 }
+
+/// How many times as much of a thread's CPU time `large` takes as `small`, whatever the machine; each the least of two,
+/// for what else a machine does only adds.
+#[cfg(feature = "measure")]
+pub fn times_as_long(large: impl Fn() + Sync, small: impl Fn() + Sync) -> f64 {
+    let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 0 };
+    // In a pool of one thread, so that all that is started there is timed.
+    let once = |work: &(dyn Fn() + Sync)| engine.alone(|meter| meter.time(work).1.cpu).expect("a thread");
+    let least = |work: &(dyn Fn() + Sync)| once(work).min(once(work));
+    let (large, small) = (least(&large), least(&small));
+    println!("{large:.4} s and {small:.4} s of CPU time");
+    large / small
+}
+
+/// The most that ten times the work may take: in proportion it takes about 10 times as long, by its square 100 times.
+pub const IN_PROPORTION: f64 = 50.0;

@@ -5,7 +5,7 @@
 //!
 //! Sources: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A Difference Evaluator for
 //! Alternating Images", HPG 2020; for high dynamic range Andersson, Nilsson, Shirley and Akenine-Möller, "Visualizing
-//! Errors in Rendered High Dynamic Range Images", Eurographics 2021. `tests/flip.rs` holds figures of the authors' own
+//! Errors in Rendered High Dynamic Range Images", Eurographics 2021. `tests/exchange/flip.rs` holds figures of the authors' own
 //! program.
 //!
 //! | question | where |

@@ -1,0 +1,28 @@
+//! Promise: a strategy is charged for all that it starts and waits for, and what it leaves on other threads is found.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `callers` | every caller that times strategies charges the same |
+//! | `units` | whatever a unit starts is on its clock, or found by the clock of the process |
+//!
+//! A process of its own: the clock of the process must see one test alone, and so each takes one lock.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod callers;
+mod units;
+
+/// Until it is dropped, no other test runs.
+pub(crate) fn quiet() -> MutexGuard<'static, ()> {
+    static QUIET: Mutex<()> = Mutex::new(());
+    QUIET.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps a processor busy.
+pub(crate) fn spin(rounds: u64) {
+    use std::hint::black_box;
+    black_box((0..rounds).fold(1, |x: u64, i| black_box(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(i))));
+}

@@ -1,0 +1,9 @@
+//! Promise: a module of `src` imports from lower floors alone, and no file grows beyond what can be read.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `floors` | the plan of floors, and where it is broken |
+//! | `imports` | which file takes what from which other |
+
+mod floors;
+mod imports;

@@ -1,0 +1,16 @@
+//! Promise: what is measured is kept, bit for bit, and tables, pages and plots follow from it alone.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `engine` | a plan, and the order of its rows, do not follow the machine |
+//! | `results` | raw results keep every number, and a run that dies keeps its rows |
+//! | `report` | tables, pages and plots follow from the raw rows, and drift is noticed |
+//! | `study` | a study records typed tables, and what it says holds |
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod engine;
+mod report;
+mod results;
+mod study;

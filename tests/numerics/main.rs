@@ -1,0 +1,22 @@
+//! Promise: arithmetic keeps the digits that matter, however far away, thin, bright or near a thing is.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `triangle` | solid angle, irradiance and points of a triangle, against high precision |
+//! | `light_sampling` | every way to draw a point on a light gives the same light, and none shows a seam |
+//! | `shading` | what a point adds is nothing or a sound number |
+//! | `visibility` | shadow rays against a slow tracer in f64, and the traps of offsets and slabs |
+//! | `translation` | where a scene stands and how large it is changes nothing |
+//! | `extreme` | every strategy stays finite, positive and right in `scenes/extreme` |
+//! | `stability` | the verb shows where arithmetic breaks and that ours does not |
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod extreme;
+mod light_sampling;
+mod shading;
+mod stability;
+mod translation;
+mod triangle;
+mod visibility;
