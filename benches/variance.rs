@@ -1,76 +1,59 @@
 //! How large is a strategy's error after one pass? See [`citylights::bench::variance`].
 //!
 //! To see that a worse estimator is found: `cargo bench --features bench --bench variance -- --save-baseline before`, then
-//! `CITYLIGHTS_BENCH_MUTANT=1 cargo bench --features bench --bench variance -- --baseline before`. Each pick of [`Mutant`]'s strategies is
-//! then kept with a chance of 1/4 only, and weighted four times.
+//! `CITYLIGHTS_BENCH_MUTANT=1 cargo bench --features bench --bench variance -- --baseline before`. A pick of `power` is
+//! then kept with a chance of 1/4 only, and weighted four times: of a variance V about a mean m this makes
+//! `4 V + 3 m²`, unbiased as before.
 
-use citylights::base::draws::Draws;
-use citylights::base::error::Result;
-use citylights::scene::receiver::Receiver;
-use citylights::strategies::{intensity, power, uniform};
-use citylights::strategy::{Arguments, BuildContext, Info, LightSampler, Pick, Picks, Registry, Strategy, Tally};
+use citylights::prelude::*;
 use std::path::{Path, PathBuf};
 
 fn main() -> Result<()> {
     let scenes = ["lamps-only", "first-night"].map(|name| Path::new("scenes").join(name).with_extension("toml"));
-    let registry = registry(std::env::var_os("CITYLIGHTS_BENCH_MUTANT").is_some());
+    let is_worse = std::env::var_os("CITYLIGHTS_BENCH_MUTANT").is_some();
+    let registry = if is_worse { Registry::standard().with::<Thinned>() } else { Registry::standard() };
     let cache = Path::new(env!("CARGO_TARGET_TMPDIR")).join("references");
     citylights::bench::variance(&registry, &scenes.each_ref().map(PathBuf::as_path), &cache)
 }
 
-/// The registry, with mutants in place of some strategies if asked for.
-fn registry(mutants: bool) -> Registry {
-    let standard = Registry::standard();
-    if !mutants {
-        return standard;
-    }
-    standard.with::<Mutant<uniform::Uniform>>().with::<Mutant<power::Power>>().with::<Mutant<intensity::Intensity>>()
-}
+/// `power`, made worse.
+struct Thinned;
 
-/// A strategy made worse: of a variance V about a mean m it makes `4 V + 3 m²`, unbiased as before.
-struct Mutant<S>(S);
+/// [`Thinned`] for a scene.
+struct Sampler(LightTable);
 
-/// [`Mutant`] for a scene.
-struct Thinned<L>(L);
+impl Strategy for Thinned {
+    const INFO: Info = Info {
+        name: "power",
+        summary: "in proportion to flux, and three of four picks dropped",
+        source: "this bench",
+        claim: Claim::Unbiased,
+    };
+    type Sampler = Sampler;
 
-impl<S: Strategy<Sampler: LightSampler>> Strategy for Mutant<S> {
-    const INFO: Info = S::INFO;
-    type Sampler = Thinned<S::Sampler>;
-
-    fn configure(arguments: &mut Arguments) -> Result<Self> {
-        Ok(Self(S::configure(arguments)?))
+    fn configure(_: &mut Arguments<'_>) -> Result<Self> {
+        Ok(Self)
     }
 
-    fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
-        Ok(Thinned(self.0.build(context)?))
+    fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
+        let radius = context.stage.scene().radius();
+        Ok(Sampler(LightTable::new(context.stage, |light| f64::from(luminance(light.flux(radius))))?))
     }
 }
 
-impl<L: LightSampler> LightSampler for Thinned<L> {
-    type Scratch = (L::Scratch, Vec<Pick>);
+impl LightSampler for Sampler {
+    type Scratch = ();
 
-    fn arrive<T: Tally>(&self, at: &Receiver, (scratch, _): &mut Self::Scratch, tally: &mut T) {
-        self.0.arrive(at, scratch, tally);
-    }
-
-    fn sample<T: Tally>(
-        &self,
-        at: &Receiver,
-        draws: &mut Draws,
-        (scratch, picks): &mut Self::Scratch,
-        out: &mut Picks<'_, T>,
-    ) {
-        picks.clear();
-        self.0.sample(at, draws, scratch, &mut Picks::new(picks, out.tally));
-        for pick in picks.iter() {
-            if draws.stream().below(4) == 0 {
-                out.push(pick.light, 4.0 * pick.weight);
-            }
+    fn sample<T: Tally>(&self, _: &Receiver, draws: &mut Draws, (): &mut (), out: &mut Picks<'_, T>) {
+        let kept = draws.stream().below(4) == 0;
+        if let Some((light, probability)) = self.0.pick(draws.choice_bits(0, 1)).filter(|_| kept) {
+            out.push(light, 4.0 / probability);
         }
     }
 
-    fn expected_counts(&self, _at: &Receiver, _counts: &mut [f32]) -> bool {
-        false
+    fn expected_counts(&self, _: &Receiver, counts: &mut [f32]) -> bool {
+        self.0.pmf().for_each(|(light, probability)| counts[light as usize] += 0.25 * probability);
+        true
     }
 
     fn heap_bytes(&self) -> usize {

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 /// Exact radiance of a receiver in cd/m^2: the noise-free sum and two independent estimates of the rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Exact {
+pub struct Exact {
     /// Point, spot and directional lights.
     pub sum: DVec3,
     /// Triangles, twice.
@@ -28,13 +28,13 @@ pub(crate) struct Exact {
 
 impl Exact {
     /// The best estimate.
-    pub(crate) fn mean(&self) -> DVec3 {
+    pub fn mean(&self) -> DVec3 {
         self.sum + (self.halves[0] + self.halves[1]) * 0.5
     }
 }
 
 /// The exact radiance of a receiver; `points` extra points a half for triangles, `seed` names their random numbers.
-pub(crate) fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
+pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     let mut result = Exact::default();
     let lights = stage.scene().lights();
     result.sum = deltas(stage, at, &mut result.rays);

@@ -20,7 +20,7 @@ mod restir;
 pub(crate) mod stochastic_cull;
 mod stochastic_lightcuts;
 mod uniform;
-mod visible;
+pub(crate) mod visible;
 
 use crate::strategy::Registry;
 

@@ -62,7 +62,11 @@ mod weights;
 pub(crate) use by_chance::BY_CHANCE;
 pub(crate) use charged::charged;
 pub use check::Check;
+#[cfg(test)]
+pub(crate) use contract::allocations;
 pub(crate) use halves::halves;
+#[cfg(test)]
+pub(crate) use impossible::{picks_in_range, picks_valid};
 pub(crate) use names::names;
 pub use options::VerifyOptions;
 pub(crate) use truth::Truth;

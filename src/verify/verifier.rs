@@ -42,6 +42,7 @@ impl<'a> Verifier<'a> {
     }
 
     /// What each light adds, at each receiver.
+    #[cfg(test)]
     pub(crate) fn truths(&self) -> &[Truth] {
         &self.truths
     }

@@ -52,6 +52,7 @@ impl Offset {
         [("scaled", Self::SCALED), ("origin-push", Self::ORIGIN_PUSH), ("t-min", Self::T_MIN), ("ulps", Self::ULPS)];
 
     /// The same policy with the far end left where it is: the light's own surface then blocks it. For tests.
+    #[cfg(test)]
     pub(crate) const fn without_far(self) -> Self {
         Self { far: 0.0, far_relative: 0.0, horizons: false, ..self }
     }

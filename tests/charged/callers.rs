@@ -1,8 +1,8 @@
 //! Promise: whatever a strategy starts and waits for is charged to it, and by every caller alike.
 #![cfg(feature = "study")]
 
-use crate::common::{sixteen, stage};
-use crate::{quiet, spin};
+use super::{quiet, spin};
+use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::RunKey;

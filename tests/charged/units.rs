@@ -1,8 +1,8 @@
 //! Promise: whatever a unit of work starts and waits for is on its clock, and what it leaves to others is found.
 #![cfg(feature = "measure")]
 
-use crate::common::{sixteen, stage};
-use crate::{quiet, spin};
+use super::{quiet, spin};
+use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
 use citylights::base::random::RunKey;
@@ -10,9 +10,7 @@ use citylights::measure::clock::{Cpu, Spent};
 use citylights::measure::engine::{Block, Engine, Meter};
 use citylights::measure::observer::Unobserved;
 use citylights::scene::receiver::Receiver;
-use citylights::strategy::{
-    Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Role, Strategy, Tally,
-};
+use citylights::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -96,13 +94,8 @@ static SAMPLED: AtomicU64 = AtomicU64::new(0);
 struct Arriving;
 
 impl Strategy for Arriving {
-    const INFO: Info = Info {
-        name: "arriving",
-        summary: "counts what it is asked",
-        source: "this test",
-        claim: Claim::Unbiased,
-        role: Role::Choosing,
-    };
+    const INFO: Info =
+        Info { name: "arriving", summary: "counts what it is asked", source: "this test", claim: Claim::Unbiased };
     type Sampler = Self;
 
     fn configure(_arguments: &mut Arguments) -> Result<Self> {

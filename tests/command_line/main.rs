@@ -4,6 +4,14 @@
 //! |---|---|
 //! | `cli` | every verb: its mistakes, its exit codes, its bytes |
 //! | `killed` | a run that is killed at any moment goes on to the same rows |
+//! | `peers` | another renderer's images become rows like any other, whatever it does |
+//! | `export` | exports are written whole or not at all |
+//! | `diff_image` | two pictures are compared by the figures that papers print |
+//! | `stability` | a file of exact values is met, or refused with line and column |
 
 mod cli;
+mod diff_image;
+mod export;
 mod killed;
+mod peers;
+mod stability;

@@ -3,10 +3,10 @@
 use citylights::measure::clock::{Clock, Cpu};
 
 /// The machine's clocks, but for a process in which nothing else runs: other tests do.
-pub struct Alone(Cpu);
+pub(super) struct Alone(Cpu);
 
 impl Alone {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self(Cpu::new())
     }
 }

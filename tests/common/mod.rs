@@ -2,12 +2,7 @@
 
 #![allow(dead_code, unreachable_pub, unused_imports, reason = "each test file uses a part of this module")]
 
-#[cfg(feature = "measure")]
-pub mod alone;
-
 use citylights::base::random::{RunKey, Stream};
-#[cfg(feature = "measure")]
-use citylights::measure::{clock::Cpu, engine::Engine};
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::receiver::Receiver;
@@ -16,6 +11,7 @@ pub use citylights::sources::small::{ALBEDO, camera, cuboid, ground, moon, panel
 use citylights::strategy::{AnySampler, BuildContext, Registry};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
+use cpu_time::ThreadTime;
 use glam::{DVec3, Vec3};
 
 /// A stage with everything default.
@@ -87,11 +83,16 @@ pub fn bits(image: &[Vec3]) -> Vec<[u32; 3]> {
 
 /// How many times as much of a thread's CPU time `large` takes as `small`, whatever the machine; each the least of two,
 /// for what else a machine does only adds.
-#[cfg(feature = "measure")]
 pub fn times_as_long(large: impl Fn() + Sync, small: impl Fn() + Sync) -> f64 {
-    let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 0 };
     // In a pool of one thread, so that all that is started there is timed.
-    let once = |work: &(dyn Fn() + Sync)| engine.alone(|meter| meter.time(work).1.cpu).expect("a thread");
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let once = |work: &(dyn Fn() + Sync)| {
+        alone.install(|| {
+            let begun = ThreadTime::now();
+            work();
+            begun.elapsed().as_secs_f64()
+        })
+    };
     let least = |work: &(dyn Fn() + Sync)| once(work).min(once(work));
     let (large, small) = (least(&large), least(&small));
     println!("{large:.4} s and {small:.4} s of CPU time");

@@ -2,7 +2,9 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{bits, cuboid, ground, image, moon, panel, point, sampler, sixteen, spot, stage, stage_with};
+use crate::promises::common::{
+    bits, cuboid, ground, image, moon, panel, point, sampler, sixteen, spot, stage, stage_with,
+};
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
@@ -33,7 +35,7 @@ fn no_strategy_allocates_once_it_is_warm() {
         let sampler = sampler(name, &stage);
         let passes = sampler.most_passes().min(4);
         let block = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 3, run: 0 }), 0..passes);
-        let found = allocations(crate::counting::allocations, || {
+        let found = allocations(crate::promises::counting::allocations, || {
             let (mut worker, mut buffer) = (block.worker(false), PickBuffer::default());
             let stage = &stage;
             move || worker.fill(stage.receivers(), 0..passes, true, &mut buffer)
@@ -44,7 +46,7 @@ fn no_strategy_allocates_once_it_is_warm() {
 
 #[test]
 fn the_counter_counts() {
-    let found = allocations(crate::counting::allocations, || || drop(std::hint::black_box(vec![1u8; 100])));
+    let found = allocations(crate::promises::counting::allocations, || || drop(std::hint::black_box(vec![1u8; 100])));
     assert_eq!(found, 1);
 }
 

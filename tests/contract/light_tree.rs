@@ -3,7 +3,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{
+use crate::promises::common::{
     expected, ground, image, moon, on_sphere, panel, point, receiver, sampler, sixteen, spot, stage, stage_with,
 };
 use citylights::base::colour::luminance;

@@ -2,9 +2,9 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::alone::Alone;
-use crate::common::{cuboid, expected, ground, point, sixteen, stage};
-use crate::runs::Runs;
+use super::runs::Runs;
+use crate::promises::alone::Alone;
+use crate::promises::common::{cuboid, expected, ground, point, sixteen, stage};
 use citylights::base::claim::Claim;
 use citylights::measure::compare::{Compared, ComparisonOptions, compare};
 use citylights::measure::engine::Engine;
@@ -46,7 +46,7 @@ fn of_lights_without_extent_it_picks_by_exactly_what_they_add() {
     let grey = (0..6).map(|i| point(Vec3::new(i as f32 * 3.0 - 8.0, 2.0, 4.0), 50.0 + 40.0 * i as f32)).collect();
     let mut parts = ground(12.0, grey);
     parts.surfaces.extend(cuboid(Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, 1.0, 6.0)));
-    let stage = crate::common::stage(parts);
+    let stage = crate::promises::common::stage(parts);
     let [oracle, intensity] = ["oracle", "intensity"].map(|name| Runs::new(name, &stage, 4, 1).mse());
     assert!(oracle < 1e-6 * intensity, "{oracle} beside {intensity}");
 }

@@ -2,8 +2,8 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{image, sixteen, stage};
-use crate::runs::Runs;
+use super::runs::Runs;
+use crate::promises::common::{image, sixteen, stage};
 use citylights::strategy::{Claim, Configured, Registry};
 
 #[test]

@@ -2,8 +2,8 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{bits, sampler, sixteen, stage};
-use crate::runs::Runs;
+use super::runs::Runs;
+use crate::promises::common::{bits, sampler, sixteen, stage};
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;

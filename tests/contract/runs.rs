@@ -1,6 +1,6 @@
 //! The means of many independent runs against the exact image, for strategies that look at a whole frame.
 
-use crate::common::sampler;
+use crate::promises::common::sampler;
 use citylights::base::colour::luminance;
 use citylights::base::random::RunKey;
 use citylights::base::statistics::{Moments, sidak, student_quantile};

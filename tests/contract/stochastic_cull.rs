@@ -2,7 +2,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{ALBEDO, ground, point, receiver, sampler, sixteen, stage, stage_with};
+use crate::promises::common::{ALBEDO, ground, point, receiver, sampler, sixteen, stage, stage_with};
 use citylights::base::colour::luminance;
 use citylights::base::random::RunKey;
 use citylights::base::statistics::Moments;

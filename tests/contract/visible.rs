@@ -3,8 +3,8 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{bits, cuboid, ground, image, moon, panel, point, receiver, sampler, stage, stage_with};
-use crate::runs::Runs;
+use super::runs::Runs;
+use crate::promises::common::{bits, cuboid, ground, image, moon, panel, point, receiver, sampler, stage, stage_with};
 use citylights::base::draws::Points;
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;

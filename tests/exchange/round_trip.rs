@@ -2,7 +2,7 @@
 
 #![cfg(all(feature = "gltf", feature = "recipe"))]
 
-use crate::common;
+use crate::promises::common;
 use citylights::export::{Renderer, export};
 use citylights::scene::light::{Light, Shape};
 use citylights::scene::{Parts, Scene};

@@ -1,8 +1,8 @@
 //! One engine times everything, and plans do not follow the machine.
 #![cfg(feature = "measure")]
 
-use crate::common::alone::Alone;
-use crate::common::{sixteen, stage};
+use crate::promises::alone::Alone;
+use crate::promises::common::{sixteen, stage};
 use citylights::measure::clock::{Clock, Cpu};
 use citylights::measure::compare::{Compared, ComparisonOptions, compare};
 use citylights::measure::engine::Engine;

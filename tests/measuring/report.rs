@@ -1,7 +1,7 @@
 //! Tables, pages and plots follow from the raw rows alone, and drift is noticed.
 #![cfg(feature = "plots")]
 
-use crate::common::{IN_PROPORTION, times_as_long};
+use crate::promises::common::{IN_PROPORTION, times_as_long};
 use citylights::base::claim::Claim;
 use citylights::record::store::{self, RowWriter};
 use citylights::record::{

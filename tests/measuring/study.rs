@@ -1,7 +1,7 @@
 //! Promise: a study records typed tables that its page and plots follow from alone, and what it says holds.
 #![cfg(feature = "study")]
 
-use crate::common::{ground, point, receiver, sampler, spot, stage_with};
+use crate::promises::common::{ground, point, receiver, sampler, spot, stage_with};
 use citylights::base::colour::luminance;
 use citylights::base::error::{Error, Result};
 use citylights::base::random::RunKey;

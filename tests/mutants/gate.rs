@@ -2,7 +2,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{sixteen, stage};
+use crate::promises::common::{sixteen, stage};
 use citylights::base::colour::luminance;
 use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;
@@ -122,7 +122,8 @@ fn mutants() -> Registry {
 }
 
 fn checks(kind: u8) -> Vec<Check> {
-    let options = VerifyOptions { allocations: Some(crate::counting::allocations), ..VerifyOptions::default() };
+    let options =
+        VerifyOptions { allocations: Some(crate::promises::counting::allocations), ..VerifyOptions::default() };
     checks_with(kind, &options)
 }
 

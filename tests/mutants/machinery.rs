@@ -3,7 +3,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{cuboid, ground, panel, point, sixteen, stage};
+use crate::promises::common::{cuboid, ground, panel, point, sixteen, stage};
 use citylights::base::colour::luminance;
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
@@ -376,7 +376,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let budget = Budget::up_to(4, 1.0);
     let (cache, folder) = (folder.path().join("cache"), folder.path());
     let films = &ImageStore::of(folder, "mutants");
-    let engine = &Engine { clock: &crate::common::alone::Alone::new(), workers: 1, seed: 1 };
+    let engine = &Engine { clock: &crate::promises::alone::Alone::new(), workers: 1, seed: 1 };
     let options = ComparisonOptions {
         typed: "citylights verify sixteen.toml",
         strategies: &strategies,

@@ -2,7 +2,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{sixteen, stage};
+use crate::promises::common::{sixteen, stage};
 use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;

@@ -2,7 +2,7 @@
 
 #![cfg(all(feature = "measure", feature = "recipe"))]
 
-use crate::common::{cuboid, ground, panel, sixteen, stage};
+use crate::promises::common::{cuboid, ground, panel, sixteen, stage};
 use citylights::scene::Parts;
 use citylights::scene::light::LightId;
 use citylights::scene::light_sampling::LightSampling;

@@ -3,7 +3,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{cuboid, ground, panel, point, sixteen, stage};
+use crate::promises::common::{cuboid, ground, panel, point, sixteen, stage};
 use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;

@@ -1,7 +1,7 @@
 //! Promise: in the scenes under `scenes/extreme` every registered strategy stays finite, positive and right.
 #![cfg(all(feature = "recipe", feature = "measure"))]
 
-use crate::common::image;
+use crate::promises::common::image;
 use citylights::base::triangle::Seen;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;

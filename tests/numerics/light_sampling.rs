@@ -1,7 +1,7 @@
 //! Points on triangle lights: every way gives the same light on average, and none shows where it takes over from
 //! another.
 
-use crate::common::receiver;
+use crate::promises::common::receiver;
 use citylights::base::random::Stream;
 use citylights::base::triangle::Seen;
 use citylights::scene::light::{Light, Shape};

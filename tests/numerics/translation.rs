@@ -1,7 +1,7 @@
 //! Promise: where a scene stands and how large it is changes nothing but what rounding its numbers changes.
 #![cfg(feature = "study")]
 
-use crate::common::{bits, digest, image, stage_with};
+use crate::promises::common::{bits, digest, image, stage_with};
 use citylights::base::statistics::Moments;
 use citylights::render::exact::exact;
 use citylights::scene::light::Shape;

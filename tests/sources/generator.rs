@@ -96,8 +96,9 @@ fn a_number_of_lights_out_of_reach_is_noted() {
 #[test]
 fn lights_keep_their_density() {
     let grown = grow(&everything(40_000), 9);
-    let size = grown.extent[1] - grown.extent[0];
-    let density = grown.lights.len() as f64 / (size.x * size.y / 1e6);
+    let corners = || grown.surfaces.iter().flat_map(|surface| surface.corners);
+    let size = corners().fold(Vec3::NEG_INFINITY, Vec3::max) - corners().fold(Vec3::INFINITY, Vec3::min);
+    let density = grown.lights.len() as f64 / f64::from(size.x * size.y / 1e6);
     assert!((density / 10_600.0 - 1.0).abs() < 0.1, "{density} lights per km^2");
 }
 

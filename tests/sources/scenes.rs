@@ -3,7 +3,6 @@
 
 use citylights::scene::Scene;
 use citylights::scene::light::{Kind, Shape};
-use citylights::scene::needs::Needs;
 use citylights::sources::Overrides;
 use citylights::sources::recipe::load;
 use std::path::Path;
@@ -13,22 +12,17 @@ fn scene(name: &str) -> Scene {
     load(&file, &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-#[cfg(feature = "measure")]
+#[cfg(feature = "cli")]
 #[test]
 fn shipped_cities_are_lit_like_cities() {
-    use citylights::inspect::inspect;
-    use citylights::visibility::offset::Offset;
-    use citylights::visibility::stage::{LeaveOut, Stage};
     for name in ["first-night", "downtown", "plaza", "lamps-only"] {
-        let pixels = inspect(&Stage::new(scene(name), LeaveOut::Yes, Offset::SCALED)).pixels;
-        let lx = pixels.street_lx.expect("a street is seen");
-        let above = pixels.street_above_step_share.expect("a street is seen");
+        let mut inspect = assert_cmd::Command::cargo_bin("citylights").expect("the binary");
+        let output = inspect.args(["inspect", &format!("scenes/{name}.toml"), "--json"]).assert().success();
+        let found: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).expect("JSON");
+        let pixels = |field: &str| found["pixels"][field].as_f64().unwrap_or_else(|| panic!("{name}: {found}"));
+        let (lx, clipped, above) = (pixels("street_lx"), pixels("clipped_share"), pixels("street_above_step_share"));
         assert!((5.0..=30.0).contains(&lx), "{name}: mean street illuminance {lx} lx, 5 to 30 are right");
-        assert!(
-            pixels.clipped_share < 0.02,
-            "{name}: {} of the pixels are clipped, under 0.02 is right",
-            pixels.clipped_share
-        );
+        assert!(clipped < 0.02, "{name}: {clipped} of the pixels are clipped, under 0.02 is right");
         assert!(above >= 0.4, "{name}: {above} of the street is above one display step, 0.4 is right");
     }
 }
@@ -46,9 +40,6 @@ fn the_shipped_recipes_are_what_their_comments_say() {
     assert!(lamps.surfaces().len() > 1_000);
     let moonlit = scene("moonlit");
     assert!(count(&moonlit, Kind::Directional) == 1 && count(&moonlit, Kind::Triangle) == 0);
-    // What a scene says that it needs is what is in it.
-    assert_eq!(Needs::of(&lamps).kinds, Kind::Point.bit());
-    assert!(!Needs::of(&downtown).has(Kind::Directional) && Needs::of(&moonlit).has(Kind::Directional));
     let stadium = scene("stadium");
     let mut flux: Vec<f32> = stadium.lights().iter().map(|light| light.flux(1.0).element_sum()).collect();
     flux.sort_by(f32::total_cmp);
@@ -56,14 +47,6 @@ fn the_shipped_recipes_are_what_their_comments_say() {
     assert!(few > 0.3 * all, "24 of {} lights have {} of the flux", flux.len(), few / all);
     assert_eq!(scene("metropolis").lights().len(), 100_000);
     assert!((999_999..=1_000_000).contains(&scene("megacity").lights().len()));
-}
-
-#[test]
-fn nothing_occludes_in_the_plaza_and_something_does_elsewhere() {
-    assert!(!Needs::of(&scene("plaza")).occlusion);
-    for name in ["first-night", "downtown", "lamps-only", "stadium", "moonlit", "shadows"] {
-        assert!(Needs::of(&scene(name)).occlusion, "{name}");
-    }
 }
 
 #[test]

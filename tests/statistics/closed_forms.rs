@@ -1,6 +1,6 @@
 //! Known answers: lamps, cones, polygons and the moon against formulas on paper.
 
-use crate::common::{ALBEDO, cuboid, ground, lambert, moon, panel, point, receiver, stage, stage_with};
+use crate::promises::common::{ALBEDO, cuboid, ground, lambert, moon, panel, point, receiver, stage, stage_with};
 use citylights::base::random::Stream;
 use citylights::render::exact::exact;
 use citylights::scene::light::{Light, Shape, cone_flux};

@@ -1,6 +1,6 @@
 //! The bias of finite lights: its closed form, its repair, and the test that it fails.
 
-use crate::common::{ALBEDO, expected, ground, point, receiver, sampler, sixteen, spot, stage_with};
+use crate::promises::common::{ALBEDO, expected, ground, point, receiver, sampler, sixteen, spot, stage_with};
 use citylights::base::random::{RunKey, Stream};
 use citylights::base::statistics::Moments;
 use citylights::render::film::Film;

@@ -2,7 +2,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{bits, digest, expected, image, point, sixteen, stage_with};
+use crate::promises::common::{bits, digest, expected, image, point, sixteen, stage_with};
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::{Parts, Scene};

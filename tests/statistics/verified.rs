@@ -2,7 +2,7 @@
 
 #![cfg(feature = "measure")]
 
-use crate::common::{ground, panel, point, sixteen, stage, stage_with};
+use crate::promises::common::{ground, panel, point, sixteen, stage, stage_with};
 use citylights::base::statistics::sidak;
 use citylights::sources::small;
 use citylights::strategy::Registry;

@@ -124,7 +124,7 @@ impl City {
     ///
     /// # Errors
     /// A number outside its range; numbers that together ask for a city too big for memory.
-    pub(crate) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         self.clone().visit(&mut Check { owner: "city".into() })?;
         let refuse = |name: &str, value: String, expected: String| {
             Err(Error::Parameter { owner: "city".into(), name: name.into(), value, expected })

@@ -15,7 +15,7 @@ pub struct Solid {
 
 impl Solid {
     /// Whether a point lies inside, not on a face.
-    pub(crate) fn contains(&self, point: Vec3) -> bool {
+    pub fn contains(&self, point: Vec3) -> bool {
         point.cmpgt(self.low).all() && point.cmplt(self.high).all()
     }
 }

@@ -46,7 +46,7 @@ use learned::{Lesson, School, Table, WIDTH};
 use weighed::Weighed;
 
 /// `picks` lights by tables of what each place sees.
-pub(super) struct Visible {
+pub(crate) struct Visible {
     /// Side of a cell in metres.
     cell: f32,
     /// Fewest receivers of a cell with a table.
@@ -111,7 +111,7 @@ impl Strategy for Visible {
 }
 
 /// [`Visible`] for a scene.
-pub(super) struct Sampler {
+pub(crate) struct Sampler {
     /// Has the clusters, and chooses where there is no table.
     tree: walks::Sampler<WIDTH>,
     cells: Cells,
@@ -124,7 +124,7 @@ pub(super) struct Sampler {
 
 /// What a worker keeps.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     tree: walks::Scratch<WIDTH>,
     /// Whether the receiver that was arrived at has a table.
     learned: bool,

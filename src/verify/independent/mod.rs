@@ -33,3 +33,5 @@ mod sums;
 pub(super) use checks::NAMES;
 pub(crate) use checks::independent;
 pub(crate) use own::Own;
+#[cfg(test)]
+pub(crate) use path::Path;

@@ -4,19 +4,16 @@
 //! |---|---|
 //! | `export` | an exported scene says what ours says, to the last bit where the format can |
 //! | `round_trip` | a scene that goes out as glTF comes back as the same scene |
-//! | `peers` | another renderer's images become rows like any other, whatever it does |
+//! | `mask` | pixels in which renderers may see different surfaces are not compared |
 //! | `image` | pictures keep their numbers, and are never half-written |
 //! | `exr` | EXR files of other tools, whole and broken |
 //! | `flip` | FLIP is the authors' FLIP |
-//! | `diff_image` | two pictures are compared by the figures that papers print |
+//! | `map` | maps of errors have the published colours |
 
-#[path = "../common/mod.rs"]
-mod common;
-
-mod diff_image;
 mod export;
 mod exr;
 mod flip;
 mod image;
-mod peers;
+mod map;
+mod mask;
 mod round_trip;

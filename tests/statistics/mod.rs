@@ -10,9 +10,6 @@
 //! | `cutoff` | the bias of finite lights: its closed form, its repair, and the test that it fails |
 //! | `reference` | a reference is exact, says how exact, and keeps to its bound of work |
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod closed_forms;
 mod cutoff;
 mod false_alarms;

@@ -2,14 +2,13 @@
 //!
 //! | file | what it shows |
 //! |---|---|
+//! | `coverage` | how often an interval holds the truth (`--ignored`: minutes) |
 //! | `engine` | a plan, and the order of its rows, do not follow the machine |
 //! | `results` | raw results keep every number, and a run that dies keeps its rows |
 //! | `report` | tables, pages and plots follow from the raw rows, and drift is noticed |
 //! | `study` | a study records typed tables, and what it says holds |
 
-#[path = "../common/mod.rs"]
-mod common;
-
+mod coverage;
 mod engine;
 mod report;
 mod results;

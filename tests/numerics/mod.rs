@@ -10,9 +10,6 @@
 //! | `extreme` | every strategy stays finite, positive and right in `scenes/extreme` |
 //! | `stability` | the verb shows where arithmetic breaks and that ours does not |
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod extreme;
 mod light_sampling;
 mod shading;

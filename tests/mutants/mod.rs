@@ -10,12 +10,6 @@
 //!
 //! Allocations are counted for each thread by itself, so that tests may run beside one another.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[cfg(feature = "measure")]
-#[path = "../common/counting.rs"]
-mod counting;
-
 mod gate;
 mod machinery;
 mod runs;

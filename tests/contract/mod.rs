@@ -4,6 +4,7 @@
 //! | file | what it shows |
 //! |---|---|
 //! | `every_strategy` | no allocation once warm, no dependence on threads, nothing lost by leaving out |
+//! | `needs` | what can be left out of a scene is not in it |
 //! | `expected_counts` | expected counts cover a city and sum to the picks, by brute force |
 //! | `allocate` | whole points, shared out without noise, within their budget |
 //! | `light_tree` | no light lost, probabilities exact, degenerate sets of lights, lightcuts |
@@ -14,11 +15,6 @@
 //!
 //! Allocations are counted for each thread by itself, so that the test that counts them may run beside others.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[cfg(feature = "measure")]
-#[path = "../common/counting.rs"]
-mod counting;
 #[cfg(feature = "measure")]
 mod runs;
 
@@ -26,6 +22,7 @@ mod allocate;
 mod every_strategy;
 mod expected_counts;
 mod light_tree;
+mod needs;
 mod oracle;
 mod resampled;
 mod restir;

@@ -9,9 +9,6 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod callers;
 mod units;
 
