@@ -6,6 +6,7 @@
 //! | `units` | whatever a unit starts is on its clock, or found by the clock of the process |
 //!
 //! A process of its own: the clock of the process must see one test alone, and so each takes one lock.
+#![cfg(feature = "measure")]
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,5 +1,4 @@
 //! Promise: whatever a unit of work starts and waits for is on its clock, and what it leaves to others is found.
-#![cfg(feature = "measure")]
 
 use super::{quiet, spin};
 use crate::promises::common::{sixteen, stage};

@@ -1,10 +1,7 @@
 //! Shadow rays against a slow tracer in f64, and the traps of offsets and slabs.
 
-use crate::promises::common::{
-    camera, cuboid, expected, ground, image, moon, panel, point, receiver, stage, stage_with,
-};
+use crate::promises::common::{camera, cuboid, ground, image, moon, panel, point, receiver, stage, stage_with};
 use citylights::base::random::Stream;
-use citylights::render::exact::exact;
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
 use citylights::scene::receiver::Receiver;
@@ -341,7 +338,8 @@ fn rays_that_graze_the_side_of_a_block_agree_with_its_shape() {
 #[cfg(feature = "measure")]
 #[test]
 fn ten_times_as_many_coincident_triangles_and_lights_build_in_about_ten_times_the_time() {
-    use crate::promises::common::{IN_PROPORTION, times_as_long};
+    use crate::promises::common::{IN_PROPORTION, expected, times_as_long};
+    use citylights::render::exact::exact;
     let window = panel(Vec3::new(0.0, 5.0, 1.0), Vec3::X, Vec3::Z, 10.0)[0];
     let at = receiver(Vec3::new(0.5, 0.5, 0.0), Vec3::Z);
     let built = |count: usize| {

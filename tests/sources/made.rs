@@ -1,6 +1,5 @@
 //! glTF files as a test wants them, right or wrong: the JSON is free to be changed before it is written.
 
-use base64::Engine;
 use citylights::base::error::Result;
 use citylights::scene::Scene;
 use citylights::sources::Overrides;
@@ -152,12 +151,15 @@ impl File {
     }
 
     /// As JSON with the buffer within.
+    #[cfg(feature = "cli")]
     pub(crate) fn embedded(&self) -> String {
+        use base64::Engine;
         let data = base64::engine::general_purpose::STANDARD.encode(&self.bin);
         self.text(Some(format!("data:application/octet-stream;base64,{data}")))
     }
 
     /// As JSON with the buffer in a file of its own.
+    #[cfg(feature = "cli")]
     pub(crate) fn beside(&self, uri: &str) -> String {
         self.text(Some(uri.to_owned()))
     }

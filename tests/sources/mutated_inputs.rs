@@ -236,12 +236,19 @@ radiance = [5, 50]
 "#;
 
 /// Reads `wanted` mutants of a whole file, each named by its number; how many were read and how many refused.
-fn run(format: &str, whole: &[u8], mutant: impl Fn(&mut Stream) -> Vec<u8>, read: impl Fn(&[u8]) -> Result<Scene>) {
+fn run(
+    format: &str,
+    whole: &[u8],
+    mutant: impl Fn(&mut Stream) -> Vec<u8>,
+    read: impl Fn(&[u8]) -> Result<Scene> + Sync,
+) {
     let (mut read_in, mut refused, begun) = (0, 0, Instant::now());
+    // Memory is watched on one thread: nothing is done on another.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let (mut most_bytes, mut longest) = (0, Duration::ZERO);
     let timed = || {
         let start = Instant::now();
-        read(whole).unwrap_or_else(|error| panic!("{error}"));
+        pool.install(|| read(whole).map(drop)).unwrap_or_else(|error| panic!("{error}"));
         start.elapsed()
     };
     let limit = LONGEST * timed().min(timed());
@@ -249,7 +256,8 @@ fn run(format: &str, whole: &[u8], mutant: impl Fn(&mut Stream) -> Vec<u8>, read
     for number in 0..wanted() {
         let bytes = mutant(&mut Stream::keyed(&[1, number]));
         let start = Instant::now();
-        let (held, result) = crate::peak::most(|| catch_unwind(AssertUnwindSafe(|| read(&bytes).map(drop))));
+        let (held, result) =
+            pool.install(|| crate::peak::most(|| catch_unwind(AssertUnwindSafe(|| read(&bytes).map(drop)))));
         let took = start.elapsed();
         let text = String::from_utf8_lossy(&bytes);
         match result {

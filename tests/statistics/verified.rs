@@ -3,7 +3,6 @@
 #![cfg(feature = "measure")]
 
 use crate::promises::common::{ground, panel, point, sixteen, stage, stage_with};
-use citylights::base::statistics::sidak;
 use citylights::sources::small;
 use citylights::strategy::Registry;
 use citylights::verify::{Truth, Verifier, VerifyOptions};
@@ -101,6 +100,7 @@ fn every_strategy_keeps_its_contract_on_first_night() {
 #[test]
 #[ignore = "takes five minutes; for a change to strategies or to leaving out"]
 fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
+    use citylights::base::statistics::sidak;
     // A check keeps its level within one strategy, scene and seed; here it is asked 96 times.
     let level = sidak(VerifyOptions::default().level, 4 * 3 * Registry::standard().infos().count());
     for name in ["lamps-only", "plaza", "moonlit", "stadium"] {
