@@ -99,7 +99,7 @@ fn became(scene: &Scene, adds: f32, fate: Fate) -> String {
                     format!("surface {surface} ({})", scene.materials()[material].name)
                 }
                 Some(Met::Light(light)) => name(scene, light),
-                None => "something".into(),
+                None => "an occluder".into(),
             };
             format!("occluded by {by}; unoccluded it would add {adds} cd/m^2")
         }

@@ -71,15 +71,17 @@ fn one_pixel(plan: &Plan<'_>, x: u32, y: u32, passes: u32) -> anyhow::Result<Out
         return Ok(Outcome::Done);
     };
     let at = plan.receivers[index as usize];
-    let point = [at];
-    let plan = Plan { receivers: &point, ..*plan };
+    // What looks at the whole frame must see it; whatever else gives this pixel the same alone.
+    let (point, place) = (std::slice::from_ref(&at), index as usize);
+    let (receivers, place) = if plan.sampler.source().is_some() { (point, 0) } else { (plan.receivers, place) };
+    let plan = Plan { receivers, ..*plan };
     print(&format!("pixel {x},{y}: position {} m, normal {}, albedo {}\n", at.position, at.normal, at.albedo))?;
-    let mut film = Film::new(1);
+    let mut film = Film::new(receivers.len());
     for pass in 0..passes {
-        let mut single = Film::starting_at(1, pass);
-        plan.run(1, &mut single);
-        plan.run(1, &mut film);
-        print(&format!("pass {pass}: {} cd/m^2, mean {}\n", single.image()[0], film.image()[0]))?;
+        let mut single = Film::starting_at(receivers.len(), pass);
+        plan.run_parallel(1, &mut single);
+        plan.run_parallel(1, &mut film);
+        print(&format!("pass {pass}: {} cd/m^2, mean {}\n", single.image()[place], film.image()[place]))?;
     }
     Ok(Outcome::Done)
 }

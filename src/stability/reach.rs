@@ -13,7 +13,7 @@ use crate::shading::contribution::contribution;
 use crate::shading::importance::importance;
 use crate::sources::small;
 use crate::strategies::stochastic_cull::drawn2;
-use crate::visibility::roulette::chance;
+use crate::visibility::russian_roulette::chance;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 

@@ -5,6 +5,6 @@ pub mod influence_tree;
 pub mod occluders;
 pub mod offset;
 pub(crate) mod reach;
-pub(crate) mod roulette;
+pub(crate) mod russian_roulette;
 pub mod stage;
 pub mod view;

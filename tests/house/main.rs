@@ -4,6 +4,8 @@
 //! |---|---|
 //! | `floors` | the plan of floors, and where it is broken |
 //! | `imports` | which file takes what from which other |
+//! | `public` | how much strangers may call |
 
 mod floors;
 mod imports;
+mod public;

@@ -13,7 +13,7 @@ use crate::strategies::parts::range::Range;
 use crate::strategies::parts::reservoir::Reservoir;
 use crate::strategy::{BuildContext, Frame, FrameSampler, LightSampler, Picks, Tally};
 use crate::visibility::influence_tree::InfluenceTree;
-use crate::visibility::roulette::chance;
+use crate::visibility::russian_roulette::chance;
 use std::sync::Arc;
 
 /// The strategy for a scene.

@@ -7,20 +7,20 @@ use crate::scene::receiver::Receiver;
 use crate::strategies::parts::range::Range;
 use crate::strategies::parts::reservoir::Reservoir;
 use crate::strategy::{BuildContext, LightSampler, Picks, Tally};
-use crate::visibility::roulette::{Roulette, Stack};
+use crate::visibility::russian_roulette::{RussianRoulette, Stack};
 use std::sync::Arc;
 
 /// The strategy for a scene.
 pub(super) struct Sampler {
     scene: Arc<Scene>,
-    roulette: Roulette,
+    roulette: RussianRoulette,
     picks: u32,
 }
 
 impl Sampler {
     pub(super) fn new(context: BuildContext<'_>, range: &Range, picks: u32) -> Self {
         let scene = Arc::clone(context.stage.scene());
-        let roulette = Roulette::new(&scene, context.stage.lights(), range.cutoff(&scene));
+        let roulette = RussianRoulette::new(&scene, context.stage.lights(), range.cutoff(&scene));
         Self { roulette, scene, picks }
     }
 }

@@ -16,7 +16,7 @@ use glam::Vec3;
 use obvhs::bvh2::Bvh2;
 
 /// Lights that survive with the probability that they reach a point.
-pub(crate) struct Roulette {
+pub(crate) struct RussianRoulette {
     bvh: Bvh2,
     /// In the hierarchy's order, with the lights they belong to.
     volumes: Vec<(Influence, LightId)>,
@@ -29,7 +29,7 @@ pub(crate) struct Roulette {
 #[derive(Default)]
 pub(crate) struct Stack(Vec<(u32, f32)>);
 
-impl Roulette {
+impl RussianRoulette {
     /// Builds the hierarchy over some lights of a scene.
     pub(crate) fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
         let (volumes, everywhere) = cutoff.volumes(scene, lights);
