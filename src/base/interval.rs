@@ -3,7 +3,7 @@
 //! The error of an image is a sum over its pixels, and a few pixels beside a lamp may hold much of it: the runs at hand
 //! then say little about a mean that rare pixels make. Their own spread cannot show what did not happen, so Student's
 //! interval misses on the side that flatters. [`Tail`] bounds what may be missing by the largest pixels that were seen,
-//! or says that it cannot: `examples/coverage.rs` measures how often the truth lies within.
+//! or says that it cannot: `tests/measuring/coverage.rs` measures how often the truth lies within.
 
 use super::statistics::{Moments, gamma_quantile, skewed, skewness, student_quantile};
 
@@ -26,7 +26,7 @@ pub(crate) const LARGEST: usize = 4;
 
 /// Events rarer than one in so many runs are left out of account: a mean stands for what that many would show.
 ///
-/// Chosen so that 95 % are held where one pixel makes a tenth of an error in a twentieth of the runs, as `examples/coverage.rs`
+/// Chosen so that 95 % are held where one pixel makes a tenth of an error in a twentieth of the runs, as `tests/measuring/coverage.rs`
 /// sees of `visible` on first-night at 64 x 36; means of lighter tails are then held more often.
 const HORIZON: f64 = 160_000.0;
 

@@ -170,6 +170,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
+#[ignore = "run by `alone`"]
 fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
     let _quiet = quiet();
     let stage = stage(sixteen());
@@ -199,6 +200,7 @@ fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
 }
 
 #[test]
+#[ignore = "run by `alone`"]
 fn work_on_a_thread_of_its_own_is_found() {
     let _quiet = quiet();
     let stage = stage(sixteen());
@@ -254,7 +256,10 @@ fn setups(scene: &str, rounds: usize) -> Option<f64> {
     worst
 }
 
-/// As the project promises: `cargo test --release --test charged -- --ignored --nocapture`.
+/// The test below.
+pub(super) const TAKES_A_MINUTE: &str = "every_caller_finds_the_same_set_up";
+
+/// As the project promises: `cargo test --release --lib every_caller_finds -- --ignored --nocapture`.
 #[test]
 #[ignore = "a minute, and only on a machine that does nothing else"]
 fn every_caller_finds_the_same_set_up() {

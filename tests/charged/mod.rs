@@ -5,13 +5,24 @@
 //! | `callers` | every caller that times strategies charges the same |
 //! | `units` | whatever a unit starts is on its clock, or found by the clock of the process |
 //!
-//! A process of its own: the clock of the process must see one test alone, and so each takes one lock.
+//! The clock of the process must see one test alone: [`alone`] runs them in a process of their own, where each takes one
+//! lock.
 #![cfg(feature = "measure")]
 
+use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 mod callers;
 mod units;
+
+#[test]
+fn alone() {
+    let mut tests = Command::new(std::env::current_exe().expect("this program"));
+    tests.args(["promises::charged", "--ignored", "--skip", callers::TAKES_A_MINUTE]);
+    let output = tests.output().expect("started");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("5 passed"), "{said}");
+}
 
 /// Until it is dropped, no other test runs.
 pub(crate) fn quiet() -> MutexGuard<'static, ()> {

@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const ROUNDS: u64 = 2_000_000;
 
 #[test]
+#[ignore = "run by `alone`"]
 fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
     let _quiet = quiet();
     let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
@@ -68,6 +69,7 @@ fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
 }
 
 #[test]
+#[ignore = "run by `alone`"]
 fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
     let _quiet = quiet();
     let stray = |work: fn()| {
@@ -128,6 +130,7 @@ impl LightSampler for Arriving {
 }
 
 #[test]
+#[ignore = "run by `alone`"]
 fn a_block_pays_for_arrival_once() {
     let _quiet = quiet();
     let stage = stage(sixteen());

@@ -1,6 +1,6 @@
 //! How often does the gate refuse a right strategy, and what does it cost? Re-runnable; minutes long, so ignored:
 //!
-//! `cargo test --release --test statistics -- --ignored --nocapture false_alarms`
+//! `cargo test --release --lib false_alarms -- --ignored --nocapture`
 
 #![cfg(all(feature = "measure", feature = "recipe"))]
 
