@@ -11,7 +11,9 @@
 //! A call that blocks until a job of the pool is done (a channel's `recv` after `rayon::spawn`) waits for ever, as it does in
 //! any pool of one thread.
 
-use super::clock::{Clock, Cpu, Spent};
+#[cfg(any(test, feature = "bench"))]
+use super::clock::Cpu;
+use super::clock::{Clock, Spent};
 use super::observer::Observer;
 use crate::base::error::{Error, Result};
 use crate::base::random::Stream;
@@ -219,6 +221,7 @@ impl Done {
 ///
 /// # Errors
 /// A strategy that cannot serve the scene; no thread to run on.
+#[cfg(any(test, feature = "bench"))]
 pub(crate) fn part_s(block: Block<'_>, times: u64, part: fn(&Done) -> f64) -> Result<f64> {
     let all = |meter: Meter<'_>| (0..times).map(|_| block.run(meter).map(|done| part(&done))).sum();
     Engine { clock: &Cpu::new(), workers: 1, seed: 0 }.alone(all)?
