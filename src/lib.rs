@@ -79,7 +79,7 @@ extern crate self as citylights;
 #[cfg(all(test, feature = "cli"))]
 #[path = "../tests"]
 mod promises {
-    mod common;
+    pub(crate) mod common;
 
     #[path = "common/alone.rs"]
     mod alone;
