@@ -19,9 +19,15 @@ mod study;
 mod sweep;
 mod table;
 
+#[cfg(feature = "cli")]
+pub(crate) use chart::{Area, Chart, Dot, Drawn, FAINT, INK, Scale, Series, WIDTH, text, ticks};
+#[cfg(feature = "cli")]
+pub(crate) use mark::{Line, Mark};
 pub(crate) use number::{grouped, short};
 pub use page::{page, section};
 pub use plot::plot;
+#[cfg(feature = "cli")]
+pub(crate) use sheet::broken;
 pub use study::study_text;
 pub use table::table;
 

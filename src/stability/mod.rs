@@ -13,6 +13,8 @@ pub mod precise;
 mod reach;
 mod tally;
 pub mod textbook;
+#[cfg(feature = "study")]
+pub(crate) mod tracer;
 mod trees;
 pub mod triangles;
 pub mod vectors;
