@@ -46,6 +46,8 @@ pub mod export;
 pub mod image;
 #[cfg(feature = "measure")]
 pub mod inspect;
+#[cfg(feature = "cli")]
+pub(crate) mod lecture;
 #[cfg(feature = "measure")]
 pub mod measure;
 #[cfg(feature = "peers")]
