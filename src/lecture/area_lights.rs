@@ -83,34 +83,43 @@ fn side(scene: &Scene) -> Option<f64> {
     extents.values().map(|(_, area)| f64::from(*area).sqrt()).max_by(f64::total_cmp)
 }
 
-/// The row of pixels that crosses most of the shadow, and the columns of it that show its commonest surface.
-fn crossing(stage: &Stage, found: &[Soft]) -> Option<(u32, Vec<u32>)> {
+/// The run of pixels of one row or column, and of one plane, that goes from light through most of the shadow to light.
+fn crossing(stage: &Stage, found: &[Soft]) -> Option<Vec<[u32; 2]>> {
     let (width, height) = stage.view().resolution();
-    let rows = (0..height).filter_map(|y| {
-        let seen = (0..width).filter_map(|x| Some((x, receiver(stage, x, y)?)));
-        let seen: Vec<_> =
-            seen.map(|(x, i)| (x, i, stage.receivers()[i].normal.to_array().map(f32::to_bits))).collect();
-        let mut counts: HashMap<[u32; 3], usize> = HashMap::new();
-        seen.iter().for_each(|(.., normal)| *counts.entry(*normal).or_default() += 1);
-        let commonest = counts.into_iter().max_by_key(|(normal, count)| (*count, *normal))?.0;
-        let level: Vec<_> = seen.into_iter().filter(|(.., normal)| *normal == commonest).collect();
-        let crossed = level.iter().filter(|(_, i, _)| found[*i].is_penumbra() || found[*i].is_umbra()).count();
-        Some((crossed, y, level.into_iter().map(|(x, ..)| x).collect()))
-    });
-    rows.max_by_key(|(crossed, y, _)| (*crossed, std::cmp::Reverse(*y))).map(|(_, y, columns)| (y, columns))
+    let rows = (0..height).map(|y| (0..width).map(|x| [x, y]).collect::<Vec<_>>());
+    let columns = (0..width).map(|x| (0..height).map(|y| [x, y]).collect::<Vec<_>>());
+    let normal =
+        |pixel: &[u32; 2]| receiver(stage, *pixel).map(|i| stage.receivers()[i].normal.to_array().map(f32::to_bits));
+    let is_dim =
+        |pixel: &[u32; 2]| receiver(stage, *pixel).is_some_and(|i| found[i].is_penumbra() || found[i].is_umbra());
+    let mut best: (usize, Option<Vec<[u32; 2]>>) = (0, None);
+    for line in rows.chain(columns) {
+        for run in line.chunk_by(|a, b| normal(a).is_some() && normal(a) == normal(b)) {
+            let (Some(first), Some(last)) = (run.iter().position(is_dim), run.iter().rposition(is_dim)) else {
+                continue;
+            };
+            let dim = last + 1 - first;
+            // As much light before and behind as half of the shadow: an edge can then be told from what it is cast by.
+            let room = dim / 2 + 2;
+            if dim > best.0 && first >= room && run.len() - last > room {
+                best = (dim, Some(run[first - room..=last + room].to_vec()));
+            }
+        }
+    }
+    best.1
 }
 
 /// The receiver that a pixel within the film sees.
-fn receiver(stage: &Stage, x: u32, y: u32) -> Option<usize> {
+fn receiver(stage: &Stage, [x, y]: [u32; 2]) -> Option<usize> {
     match stage.view().seen(x, y) {
         Ok(Seen::Receiver(index)) => Some(index as usize),
         _ => None,
     }
 }
 
-/// Irradiance along some pixels of a row, in lx, over the way from the first of them in m.
-fn profile(stage: &Stage, found: &[Soft], (y, columns): &(u32, Vec<u32>)) -> Vec<Dot> {
-    let along: Vec<usize> = columns.iter().filter_map(|x| receiver(stage, *x, *y)).collect();
+/// Irradiance along some pixels, in lx, over the way from the first of them in m.
+fn profile(stage: &Stage, found: &[Soft], pixels: &[[u32; 2]]) -> Vec<Dot> {
+    let along: Vec<usize> = pixels.iter().filter_map(|pixel| receiver(stage, *pixel)).collect();
     let receivers = stage.receivers();
     let Some(first) = along.first().map(|i| receivers[*i].position) else { return Vec::new() };
     let dot = |i: &usize| {
@@ -132,13 +141,13 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         taken.push((name, own * f64::from(factor), stage, found));
     }
     // The scene's own size says where the profile is taken.
-    let row =
+    let way =
         taken.iter().find(|(name, ..)| *name == SIZES[2].0).and_then(|(_, _, stage, found)| crossing(stage, found));
     let (mut panels, mut series) = (Vec::new(), Vec::new());
     for (i, (name, side, stage, found)) in taken.iter().enumerate() {
         let radiance: Vec<_> = found.iter().map(|soft| soft.radiance).collect();
         let mut bitmap = shown(stage, &radiance);
-        bitmap.row = row.as_ref().map(|(y, _)| *y);
+        bitmap.line = way.as_ref().and_then(|way| Some([*way.first()?, *way.last()?]));
         let count =
             |of: fn(&Soft) -> bool| percent(found.iter().filter(|soft| of(soft)).count() as u64, found.len() as u64);
         panels.push(Panel {
@@ -150,13 +159,13 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
                 count(Soft::is_penumbra)
             ),
         });
-        let points = row.as_ref().map_or_else(Vec::new, |row| profile(stage, found, row));
+        let points = way.as_ref().map_or_else(Vec::new, |way| profile(stage, found, way));
         series.push(Series { name: format!("{} wide", metres(*side)), mark: Mark::line(i, Line::Solid), points });
     }
     let below = panels.split_off(2);
     let chart = Chart {
         title: "Across the shadow".into(),
-        subtitle: "irradiance on the ground, along the row of pixels that the ticks mark".into(),
+        subtitle: "irradiance along the line in the pictures, from its upper or left end".into(),
         x: Scale { label: "way along the ground, m".into(), logarithmic: false },
         y: Scale { label: "irradiance, lx".into(), logarithmic: false },
         series,

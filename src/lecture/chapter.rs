@@ -34,7 +34,7 @@ pub(crate) const CHAPTERS: [Chapter; 9] = [
         name: "shadow-rays",
         question: "What is a shadow ray, where does it end, and when is none needed?",
         scene: LAMPS,
-        resolution: (192, 108),
+        resolution: (288, 162),
         draw: shadow_rays::draw,
     },
     Chapter {
@@ -42,7 +42,7 @@ pub(crate) const CHAPTERS: [Chapter; 9] = [
         name: "offsets",
         question: "Where does a shadow ray start, so that its own surface does not block it?",
         scene: LAMPS,
-        resolution: (192, 108),
+        resolution: (240, 135),
         draw: offsets::draw,
     },
     Chapter {
@@ -50,7 +50,7 @@ pub(crate) const CHAPTERS: [Chapter; 9] = [
         name: "area-lights",
         question: "Why does a larger light cast a softer shadow?",
         scene: PANEL,
-        resolution: (192, 128),
+        resolution: (288, 192),
         draw: area_lights::draw,
     },
     Chapter {
@@ -66,7 +66,7 @@ pub(crate) const CHAPTERS: [Chapter; 9] = [
         name: "solid-angle",
         question: "How large does an area light look, and how far does the formula reach?",
         scene: SIGN,
-        resolution: (192, 108),
+        resolution: (288, 162),
         draw: solid_angle::draw,
     },
     Chapter {
@@ -82,7 +82,7 @@ pub(crate) const CHAPTERS: [Chapter; 9] = [
         name: "many-lights",
         question: "Of many lights, how many matter at a point?",
         scene: STREET,
-        resolution: (192, 108),
+        resolution: (288, 162),
         draw: many_lights::draw,
     },
     Chapter {

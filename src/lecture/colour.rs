@@ -23,25 +23,32 @@ pub(super) fn shown(stage: &Stage, radiance: &[DVec3]) -> Bitmap {
 #[derive(Clone, Copy)]
 pub(super) struct Ramp {
     /// The values at the ends of the colour bar.
-    pub(super) ends: [f64; 2],
+    ends: [f64; 2],
     /// Whether equal factors are equal steps; the ends are above 0 then.
-    pub(super) logarithmic: bool,
+    logarithmic: bool,
+    /// Whether all values are whole.
+    whole: bool,
 }
 
 impl Ramp {
     /// From 0 to a value.
     pub(super) fn up_to(high: f64) -> Self {
-        Self { ends: [0.0, if high > 0.0 { high } else { 1.0 }], logarithmic: false }
+        Self { ends: [0.0, if high > 0.0 { high } else { 1.0 }], logarithmic: false, whole: false }
     }
 
-    /// By factors, from the least of the values that are above 0 to the greatest, at least one decade.
+    /// From 0 to a number of things.
+    pub(super) fn counts(high: f64) -> Self {
+        Self { whole: true, ..Self::up_to(high) }
+    }
+
+    /// By factors, from the least of the values that are above 0 to the greatest: at least one decade, at most three.
     pub(super) fn decades(values: &[f64]) -> Self {
         let (low, high) = values
             .iter()
             .filter(|value| **value > 0.0 && value.is_finite())
             .fold((f64::INFINITY, 0.0f64), |(low, high), &value| (low.min(value), high.max(value)));
         let high = if high > 0.0 { high } else { 1.0 };
-        Self { ends: [low.min(0.1 * high), high], logarithmic: true }
+        Self { ends: [low.clamp(1e-3 * high, 0.1 * high), high], logarithmic: true, whole: false }
     }
 
     fn place(self, value: f64) -> f64 {
@@ -63,13 +70,15 @@ pub(super) fn mapped(stage: &Stage, values: &[f64], ramp: Ramp, label: &str) -> 
         Seen::Receiver(index) => magma(ramp.place(values[*index as usize])),
     };
     let scale = Scale { label: label.to_owned(), logarithmic: ramp.logarithmic };
-    let bar = ColourBar { label: label.to_owned(), ticks: ticks(&scale, ramp.ends) };
+    let mut ticks = ticks(&scale, ramp.ends);
+    ticks.retain(|(_, value)| !ramp.whole || value.parse::<u64>().is_ok());
+    let bar = ColourBar { label: label.to_owned(), ticks };
     bitmap(stage, stage.view().pixels().iter().map(texel).collect(), Some(bar))
 }
 
 fn bitmap(stage: &Stage, texels: Vec<[u8; 3]>, bar: Option<ColourBar>) -> Bitmap {
     let (width, height) = stage.view().resolution();
-    Bitmap { width, height, texels, bar, cross: None, row: None }
+    Bitmap { width, height, texels, bar, cross: None, line: None }
 }
 
 #[cfg(test)]
@@ -86,5 +95,6 @@ mod tests {
         assert_eq!(Ramp::up_to(4.0).place(1.0), 0.25);
         assert_eq!(Ramp::up_to(0.0).place(0.0), 0.0, "nothing at all is still a map");
         assert_eq!(Ramp::decades(&[3.0]).ends, [0.1 * 3.0, 3.0]);
+        assert_eq!(Ramp::decades(&[1e-9, 2.0]).ends, [1e-3 * 2.0, 2.0]);
     }
 }

@@ -28,16 +28,15 @@ const BAR_WITH_WORDS: i32 = BAR + 52;
 const TITLE_SIZE: i32 = 23;
 const SIZE: i32 = 20;
 /// Pixels that a letter takes, on average and with some to spare.
-const LETTER: f64 = 8.1;
-const TITLE_LETTER: f64 = 9.6;
-/// Where the first row begins, how tall charts are, and where bars stand in them.
-const TOP: i32 = 84;
+const LETTER: f64 = 8.9;
+const TITLE_LETTER: f64 = 10.4;
+/// How tall charts are, and where bars stand in theirs.
 const CHART: i32 = 460;
 const BARS: [i32; 4] = [88, 842, 60, 320];
 
 /// The plate as SVG.
 pub(super) fn svg(plate: &Plate) -> Result<String> {
-    let height = plate.rows.iter().fold(TOP, |y, row| y + height(row));
+    let height = plate.rows.iter().fold(top(plate), |y, row| y + height(row));
     let mut svg = String::new();
     let mut images = String::new();
     draw(plate, height, &mut svg, &mut images)
@@ -52,8 +51,10 @@ fn draw(plate: &Plate, height: i32, svg: &mut String, images: &mut String) -> Dr
     let area = SVGBackend::with_string(svg, (WIDTH as u32, height as u32)).into_drawing_area();
     area.fill(&WHITE)?;
     line(&area, &plate.title, (MARGIN, 30), 30, INK)?;
-    line(&area, &plate.subtitle, (MARGIN, 60), SIZE, FAINT)?;
-    let mut y = TOP;
+    for (i, subtitle) in subtitle(plate).iter().enumerate() {
+        line(&area, subtitle, (MARGIN, 60 + LINE * i as i32), SIZE, FAINT)?;
+    }
+    let mut y = top(plate);
     for row in &plate.rows {
         let part = area.clone().shrink((0, y), (WIDTH, self::height(row)));
         match row {
@@ -70,6 +71,15 @@ fn draw(plate: &Plate, height: i32, svg: &mut String, images: &mut String) -> Dr
         y += self::height(row);
     }
     area.present()
+}
+
+fn subtitle(plate: &Plate) -> Vec<String> {
+    lines(&plate.subtitle, WIDTH - 2 * MARGIN, LETTER)
+}
+
+/// Where the first row begins.
+fn top(plate: &Plate) -> i32 {
+    62 + LINE * subtitle(plate).len() as i32
 }
 
 fn line(area: &Area<'_>, what: &str, at: (i32, i32), size: i32, colour: RGBColor) -> Drawn {
@@ -102,7 +112,7 @@ fn heights(panels: &[Panel]) -> Heights {
         titles: most(&|panel| TITLE_LINE * lines(&panel.title, width, TITLE_LETTER).len() as i32),
         pictures: most(&|panel| match &panel.drawing {
             Drawing::Bitmap(bitmap) => scaled(bitmap, width),
-            Drawing::Dots(_) => width,
+            Drawing::Dots(dots) => dots_height(dots, width),
         }),
         bars: most(&|panel| match &panel.drawing {
             Drawing::Bitmap(Bitmap { bar: Some(_), .. }) => BAR_WITH_WORDS,
@@ -128,6 +138,12 @@ fn scaled(bitmap: &Bitmap, width: i32) -> i32 {
     (f64::from(width) * f64::from(bitmap.height) / f64::from(bitmap.width)).round().max(1.0) as i32
 }
 
+/// Height of a flat triangle of a width on the page: no more than it is wide.
+fn dots_height(dots: &Dots, width: i32) -> i32 {
+    let (low, high) = dots.frame();
+    (f64::from(width) * ((high[1] - low[1]) / (high[0] - low[0])).min(1.0)).round() as i32
+}
+
 /// `top` is where the area begins on the page: images are placed there.
 fn draw_panel(
     area: &Area<'_>,
@@ -141,7 +157,7 @@ fn draw_panel(
         line(area, title, (x, 13 + TITLE_LINE * i as i32), TITLE_SIZE, INK)?;
     }
     let y = heights.titles;
-    match &panel.drawing {
+    let below = match &panel.drawing {
         Drawing::Bitmap(bitmap) => {
             let height = scaled(bitmap, width);
             embed(images, bitmap.width, bitmap.height, &bitmap.texels, [x, top + y, width, height]);
@@ -149,10 +165,13 @@ fn draw_panel(
             if let Some(bar) = &bitmap.bar {
                 draw_bar(area, bar, [x, y + height + 6, width], top, images)?;
             }
+            y + height + if bitmap.bar.is_some() { BAR_WITH_WORDS } else { 8 }
         }
-        Drawing::Dots(dots) => draw_dots(area, dots, [x, y, width, heights.pictures])?,
-    }
-    let below = y + heights.pictures + heights.bars;
+        Drawing::Dots(dots) => {
+            draw_dots(area, dots, [x, y, width, heights.pictures])?;
+            y + heights.pictures + 8
+        }
+    };
     for (i, caption) in lines(&panel.caption, width, LETTER).iter().enumerate() {
         line(area, caption, (x, below + LINE / 2 + LINE * i as i32), SIZE, FAINT)?;
     }
@@ -185,10 +204,10 @@ fn draw_marks(area: &Area<'_>, bitmap: &Bitmap, [x, y, width, height]: [i32; 4])
                 stroke((cx + 5 * dx, cy + 5 * dy), (cx + 16 * dx, cy + 16 * dy))?;
             }
         }
-        if let Some(row) = bitmap.row {
-            let cy = y + along(row, bitmap.height, height);
-            stroke((x, cy), (x + width / 16, cy))?;
-            stroke((x + width - width / 16, cy), (x + width, cy))?;
+        if let Some(ends) = bitmap.line {
+            let [from, to] =
+                ends.map(|[px, py]| (x + along(px, bitmap.width, width), y + along(py, bitmap.height, height)));
+            stroke(from, to)?;
         }
     }
     Ok(())
@@ -215,10 +234,8 @@ fn draw_bar(area: &Area<'_>, bar: &ColourBar, [x, y, width]: [i32; 3], top: i32,
 
 fn draw_dots(area: &Area<'_>, dots: &Dots, [x, y, width, height]: [i32; 4]) -> Drawn {
     area.draw(&Rectangle::new([(x, y), (x + width, y + height)], FAINT.stroke_width(1)))?;
-    let (low, high) = dots.bounds();
-    let room = 24;
-    let scale = (f64::from(width - 2 * room) / (high[0] - low[0]).max(1e-9))
-        .min(f64::from(height - 2 * room) / (high[1] - low[1]).max(1e-9));
+    let (low, high) = dots.frame();
+    let scale = (f64::from(width) / (high[0] - low[0])).min(f64::from(height) / (high[1] - low[1]));
     let at = |p: &[f64; 2]| {
         let right = scale * (p[0] - 0.5 * (low[0] + high[0]));
         let up = scale * (p[1] - 0.5 * (low[1] + high[1]));
@@ -236,6 +253,16 @@ fn draw_dots(area: &Area<'_>, dots: &Dots, [x, y, width, height]: [i32; 4]) -> D
         area.draw(&PathElement::new(ends, RGBColor(213, 94, 0).stroke_width(3)))?;
     }
     Ok(())
+}
+
+/// A share in per cent with as many digits as stand over a bar.
+fn short_share(share: f64) -> String {
+    match 100.0 * share {
+        0.0 => "0".to_owned(),
+        ..0.01 => "<0.01".to_owned(),
+        small @ ..1.0 => format!("{small:.2}"),
+        large => format!("{large:.0}"),
+    }
 }
 
 fn draw_bars(area: &Area<'_>, bars: &Bars) -> Drawn {
@@ -258,6 +285,14 @@ fn draw_bars(area: &Area<'_>, bars: &Bars) -> Drawn {
             let from = x + j as i32 * thick;
             let corner = (from + thick - 2, up(100.0 * share / high));
             area.draw(&Rectangle::new([(from, corner.1), (corner.0, bottom)], mark.colour.filled()))?;
+            text(
+                area,
+                &short_share(*share),
+                (from + thick / 2 - 1, corner.1 - 2),
+                15,
+                INK,
+                (HPos::Center, VPos::Bottom),
+            )?;
         }
         for (line, words) in label.iter().enumerate() {
             let at = (x + (each - 14) / 2, bottom + 10 + 20 * line as i32);

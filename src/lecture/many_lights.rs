@@ -4,11 +4,11 @@ use super::asked::Asked;
 use super::colour::{Ramp, mapped, shown};
 use super::each::each;
 use super::plate::{Drawing, Panel, Plate, Row};
-use super::words::share;
+use super::words::{rounded, share};
 use crate::base::colour::luminance;
 use crate::base::error::Result;
 use crate::base::statistics::quantile;
-use crate::report::{grouped, short};
+use crate::report::grouped;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -58,7 +58,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             caption: format!(
                 "At half of the pixels {} lights or fewer add anything at all: the others face away, lie below the horizon or are \
                  hidden.",
-                short(lit)
+                rounded(lit)
             ),
         },
         Panel {
@@ -66,7 +66,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             drawing: Drawing::Bitmap(mapped(&stage, &counts, Ramp::decades(&counts), "lights, the brightest first")),
             caption: format!(
                 "Median: {} of {} lights, {}.",
-                short(carry),
+                rounded(carry),
                 grouped(all as u64),
                 share(carry / all.max(1) as f64)
             ),

@@ -3,7 +3,7 @@
 use super::asked::{Asked, ready};
 use super::colour::shown;
 use super::plate::{Drawing, Panel, Plate, Row};
-use super::words::percent;
+use super::words::{metres, percent};
 use crate::base::error::{Error, Result};
 use crate::base::triangle::CENTROID;
 use crate::report::grouped;
@@ -33,6 +33,8 @@ struct Outcome {
     wrong: u64,
     /// Pixels at which the truth hangs on less than the tolerance, and nothing is wrong otherwise.
     undecided: u64,
+    /// In m.
+    tolerance: f64,
 }
 
 /// Each light at one receiver, an area light by its middle: radiance under the policy, whether any is wrong, whether any
@@ -65,6 +67,7 @@ fn outcome(stage: &Stage) -> Outcome {
         wrong: found.iter().filter(|(_, wrong, _)| *wrong).count() as u64,
         undecided: found.iter().filter(|(_, wrong, undecided)| *undecided && !wrong).count() as u64,
         radiance: found.into_iter().map(|(radiance, ..)| radiance).collect(),
+        tolerance,
     }
 }
 
@@ -95,16 +98,18 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             Offset::ORIGIN_PUSH,
             "There the push is less than half a step of the coordinates and is rounded away.",
         ),
-        ("Push grown with the coordinates, 10 km away", far()?, Offset::SCALED, "The default, `scaled`."),
+        ("Push grown with the coordinates, 10 km away", far()?, Offset::SCALED, "The default."),
     ];
     let mut panels = Vec::new();
     for (title, scene, offset, says) in cases {
         let stage = ready(scene, offset)?;
-        let Outcome { radiance, wrong, undecided } = outcome(&stage);
+        let Outcome { radiance, wrong, undecided, tolerance } = outcome(&stage);
         let all = stage.receivers().len() as u64;
         let hang = match undecided {
             0 => String::new(),
-            some => format!(" {} more hang on less than the tolerance of the truth.", grouped(some)),
+            some => {
+                format!(" At {} more, less than {} decides: they are not judged.", grouped(some), metres(tolerance))
+            }
         };
         panels.push(Panel {
             title: title.into(),

@@ -4,7 +4,7 @@ use super::asked::{Asked, place};
 use super::colour::shown;
 use super::each::each;
 use super::plate::{Bars, Drawing, Panel, Plate, Row};
-use super::words::share;
+use super::words::{of_the_mean, share};
 use crate::base::error::{Error, Result};
 use crate::base::random::RunKey;
 use crate::render::film::Film;
@@ -27,7 +27,7 @@ const STRATEGIES: [(&str, &str); 3] =
 const PICKS: u32 = 16;
 
 /// Lights whose shares are shown.
-const SHOWN: usize = 6;
+const SHOWN: usize = 5;
 
 /// Points on triangles at the pixel, in each of the truth's repetitions.
 const POINTS: u32 = 1024;
@@ -109,7 +109,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         panels.push(Panel {
             title: format!("{strategy}: {by}"),
             drawing: Drawing::Bitmap(bitmap),
-            caption: format!("{PICKS} picks a pixel. RMSE: {} of the mean.", share(rmse)),
+            caption: format!("{PICKS} picks a pixel. RMSE: {}.", of_the_mean(rmse)),
         });
     }
     let names = std::iter::once("exact share of the light").chain(STRATEGIES.iter().map(|(name, _)| *name));

@@ -54,8 +54,8 @@ pub(super) struct Bitmap {
     pub(super) bar: Option<ColourBar>,
     /// A pixel that a cross marks, from the left and the top.
     pub(super) cross: Option<[u32; 2]>,
-    /// A row of pixels that ticks at both ends mark.
-    pub(super) row: Option<u32>,
+    /// Two pixels that a line joins.
+    pub(super) line: Option<[[u32; 2]; 2]>,
 }
 
 /// What false colours mean.

@@ -105,11 +105,10 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         let text = format!("{}: this chapter needs an area light, and there is none", stage.scene().name());
         return Err(Error::Invalid(text));
     }
-    let most = |receivers: &[Receiver]| -> Option<usize> {
-        let found = receivers.iter().enumerate().filter_map(|(i, at)| Some((i, brightest(lights, at)?.1)));
-        found.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
-    };
-    let at = asked.receiver(&stage, |receivers| most(receivers).map(|i| &receivers[i]))?;
+    let at = asked.receiver(&stage, |receivers| {
+        let lit = receivers.iter().filter_map(|at| Some((at, brightest(lights, at)?.1)));
+        lit.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
+    })?;
     let [x, y] = super::asked::place(&stage, at);
     let (id, _) = brightest(lights, at)
         .ok_or_else(|| Error::Invalid(format!("pixel {x},{y} gets no light from any triangle: name another")))?;
@@ -122,10 +121,14 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
     let maps: [(&str, &str, Box<Map<'_>>); 4] = [
         ("Without the square root: wrong", "α = u v, β = 1 − u", Box::new(|u| (naive(u), Weight::Area))),
         ("Uniform by area", "α = √u v, β = 1 − √u", Box::new(move |u| (area(u), Weight::Area))),
-        ("Uniform by solid angle", "Arvo 1995", Box::new(|u| (angle.sample(u), Weight::Angle(angle.solid_angle())))),
+        (
+            "Uniform by solid angle",
+            "Idea: Arvo 1995",
+            Box::new(|u| (angle.sample(u), Weight::Angle(angle.solid_angle()))),
+        ),
         (
             "By solid angle times the receiver's cosine",
-            "Arvo 2001",
+            "Idea: Arvo 2001",
             Box::new(|u| (projected.sample(u), Weight::Irradiance(projected.irradiance()))),
         ),
     ];
@@ -139,10 +142,9 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         let points: Vec<[f64; 2]> = cells(SIDE, asked.seed).map(|u| map(u).0).collect();
         let in_part = points.iter().filter(|b| weight_of(nearest, **b) > 0.5).count();
         let Judged { mean, deviation } = judge(&**map, &from, normal, size, front, asked.seed);
-        let off = if (mean - 1.0).abs() < 2e-3 {
-            "their mean is right".to_owned()
-        } else {
-            format!("their mean is {} off", share(mean - 1.0))
+        let off = match mean - 1.0 {
+            off if off.abs() < 2e-3 => "the mean is right".to_owned(),
+            off => format!("the mean is {} too {}", share(off.abs()), if off > 0.0 { "high" } else { "low" }),
         };
         let [a, b, c] = corners;
         let place = |[b1, b2]: [f64; 2]| flat(a + (b - a) * b1 + (c - a) * b2);
@@ -155,7 +157,8 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
                 receiver: foot(flat(at.position.as_dvec3()), &corners.map(flat)),
             }),
             caption: format!(
-                "{formula}. {in_part} of {} points in the shaded quarter. Irradiance from one point: {off}, its deviation {}.",
+                "{formula}. {in_part} of {} points lie in the shaded quarter. Irradiance from single points: {off}, the standard \
+                 deviation is {}.",
                 SIDE * SIDE,
                 share(deviation)
             ),
@@ -167,7 +170,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
     Ok(Plate {
         title: "4  Points on a triangle".into(),
         subtitle: format!(
-            "{}, pixel {x},{y}: {} from the corner (cross). The shaded quarter of the area is {} of the solid angle, {} of the irradiance.",
+            "{}, pixel {x},{y}. The receiver (cross) is {} from the nearest corner. The shaded quarter of the area is {} of the solid angle, {} of the irradiance.",
             asked.scene_in_words(),
             metres(distance),
             share(part.solid_angle().abs() / from.solid_angle().abs()),

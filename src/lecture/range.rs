@@ -1,18 +1,19 @@
 //! Chapter 8: what is lost where each light ends at the distance at which it alone can no longer be seen?
 
 use super::asked::Asked;
-use super::colour::{Ramp, mapped};
+use super::colour::{Ramp, mapped, shown};
 use super::each::each;
 use super::plate::{Drawing, Panel, Plate, Row};
-use super::words::share;
+use super::words::{rounded, share};
 use crate::base::colour::luminance;
 use crate::base::error::Result;
-use crate::report::{grouped, short};
+use crate::report::grouped;
 use crate::scene::cutoff::{Cutoff, Transfer};
 use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::visibility::influence_tree::InfluenceTree;
 use crate::visibility::stage::Stage;
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// The cut-off in display steps of 1/255, as the lecture has it.
@@ -23,9 +24,9 @@ const STEPS: f32 = 0.5;
 struct Dropped {
     /// Lights in range.
     listed: usize,
-    /// Luminance in cd/m^2 of all lights, and of those out of range.
-    all: f64,
-    lost: f64,
+    /// Radiance in cd/m^2 of all lights, and of those out of range.
+    all: DVec3,
+    lost: DVec3,
     /// The greatest displayed value, in display steps, that one light out of range adds in any channel.
     brightest: f64,
 }
@@ -36,14 +37,14 @@ fn dropped(stage: &Stage, tree: &InfluenceTree, at: &Receiver, seed: u64) -> Dro
     tree.list(at.position, &mut list);
     let mut is_listed = vec![false; lights.len()];
     list.iter().for_each(|light| is_listed[*light as usize] = true);
-    let grey = |listed: bool| {
-        let chosen = lights.iter().zip(&is_listed).filter(|(_, is)| listed || !**is);
-        chosen.map(|(light, _)| f64::from(luminance(light.as_vec3()))).sum::<f64>()
-    };
-    let out = lights.iter().zip(&is_listed).filter(|(_, is)| !**is);
-    let brightest = out.map(|(light, _)| light.max_element()).fold(0.0, f64::max);
+    let out = || lights.iter().zip(&is_listed).filter(|(_, is)| !**is).map(|(light, _)| *light);
+    let brightest = out().map(DVec3::max_element).fold(0.0, f64::max);
     let steps = 255.0 * f64::from(stage.scene().exposure());
-    Dropped { listed: list.len(), all: grey(true), lost: grey(false), brightest: brightest * steps }
+    Dropped { listed: list.len(), all: lights.iter().sum(), lost: out().sum(), brightest: brightest * steps }
+}
+
+fn grey(radiance: DVec3) -> f64 {
+    f64::from(luminance(radiance.as_vec3()))
 }
 
 fn tree(stage: &Stage) -> InfluenceTree {
@@ -57,41 +58,59 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
     let receivers = stage.receivers();
     let found: Vec<Dropped> = receivers.par_iter().map(|at| dropped(&stage, &tree, at, asked.seed)).collect();
     let listed: Vec<f64> = found.iter().map(|one| one.listed as f64).collect();
-    let shares: Vec<f64> =
-        found.iter().map(|one| if one.all > 0.0 { 100.0 * one.lost / one.all } else { 0.0 }).collect();
+    let shares = found.iter().map(|one| if grey(one.all) > 0.0 { 100.0 * grey(one.lost) / grey(one.all) } else { 0.0 });
+    let shares: Vec<f64> = shares.collect();
     let sum = |of: fn(&Dropped) -> f64| found.iter().map(of).sum::<f64>();
     let most = |values: &[f64]| values.iter().fold(0.0f64, |most, value| most.max(*value));
     let brightest = found.iter().fold(0.0f64, |most, one| most.max(one.brightest));
     let lights = stage.scene().lights().len() as u64;
-    let panels = vec![
+    let picture = |of: fn(&Dropped) -> DVec3| {
+        let radiance: Vec<DVec3> = found.iter().map(of).collect();
+        Drawing::Bitmap(shown(&stage, &radiance))
+    };
+    let pictures = vec![
+        Panel {
+            title: format!("All {} lights", grouped(lights)),
+            drawing: picture(|one| one.all),
+            caption: "The exact picture.".into(),
+        },
+        Panel {
+            title: "At each pixel the lights in range alone".into(),
+            drawing: picture(|one| one.all - one.lost),
+            caption: format!(
+                "{} of all light is lost. Yet the brightest light that is left out anywhere adds {} of a display step.",
+                share(sum(|one| grey(one.lost)) / sum(|one| grey(one.all)).max(f64::MIN_POSITIVE)),
+                rounded(brightest)
+            ),
+        },
+    ];
+    let maps = vec![
         Panel {
             title: "Lights in range".into(),
-            drawing: Drawing::Bitmap(mapped(&stage, &listed, Ramp::up_to(most(&listed)), "lights in range")),
+            drawing: Drawing::Bitmap(mapped(&stage, &listed, Ramp::counts(most(&listed)), "lights in range")),
             caption: format!(
-                "{} of {} lights on average: those that can add half a display step, {STEPS}/255, to a pixel.",
-                short(sum(|one| one.listed as f64) / found.len() as f64),
+                "{} of {} on average. Out of range, a light adds less than half a display step, {STEPS}/255, even to the brightest \
+                 surface that faces it.",
+                rounded(sum(|one| one.listed as f64) / found.len() as f64),
                 grouped(lights)
             ),
         },
         Panel {
-            title: "Light that the others would have added".into(),
+            title: "What is lost".into(),
             drawing: Drawing::Bitmap(mapped(
                 &stage,
                 &shares,
                 Ramp::up_to(most(&shares)),
-                "lost, % of the exact light of the pixel",
+                "% of the pixel's light that the others add",
             )),
-            caption: format!(
-                "{} of all light is lost. The brightest light that was dropped would have added {} of a display step.",
-                share(sum(|one| one.lost) / sum(|one| one.all).max(f64::MIN_POSITIVE)),
-                short(brightest)
-            ),
+            caption: "The more lights beyond their range, the more is lost: each is invisible, their sum is not."
+                .into(),
         },
     ];
     Ok(Plate {
         title: "8  Range: the cut-off".into(),
         subtitle: format!("{}; a linear display, as the cut-off is defined", asked.scene_in_words()),
-        rows: vec![Row::Panels(panels)],
+        rows: vec![Row::Panels(pictures), Row::Panels(maps)],
     })
 }
 
@@ -126,26 +145,24 @@ mod tests {
                 let displayed = stage.scene().exposure() * albedo / PI * light.colour.max_element() / d2;
                 displayed >= STEPS / 255.0
             };
-            let mut expected = Dropped { listed: 0, all: 0.0, lost: 0.0, brightest: 0.0 };
+            let mut expected = Dropped { listed: 0, all: DVec3::ZERO, lost: DVec3::ZERO, brightest: 0.0 };
             for (light, adds) in stage.scene().lights().iter().zip(&adds) {
-                let grey = f64::from(luminance(adds.as_vec3()));
-                expected.all += grey;
+                expected.all += adds;
                 if in_range(light) {
                     expected.listed += 1;
                 } else {
-                    expected.lost += grey;
+                    expected.lost += adds;
                     let shown = 255.0 * f64::from(stage.scene().exposure()) * adds.max_element();
                     expected.brightest = expected.brightest.max(shown);
                 }
             }
             assert_eq!(found.listed, expected.listed, "pixel {}", at.pixel);
-            for (found, expected) in
-                [(found.all, expected.all), (found.lost, expected.lost), (found.brightest, expected.brightest)]
-            {
-                assert!((found - expected).abs() <= 1e-9 * expected, "pixel {}: {found} for {expected}", at.pixel);
+            for (found, expected) in [(found.all, expected.all), (found.lost, expected.lost)] {
+                assert!((found - expected).length() <= 1e-9 * expected.length(), "pixel {}: {found}", at.pixel);
             }
+            assert!((found.brightest - expected.brightest).abs() <= 1e-9 * expected.brightest, "pixel {}", at.pixel);
             assert!(found.brightest <= f64::from(STEPS) * 1.0001, "each dropped light is invisible alone");
-            partly += u32::from(found.lost > 0.0 && found.lost < found.all);
+            partly += u32::from(found.lost != DVec3::ZERO && found.lost != found.all);
         }
         assert!(partly > 100, "the cut-off drops something and keeps something at {partly} pixels");
     }

@@ -4,12 +4,12 @@ use super::asked::Asked;
 use super::colour::{Ramp, mapped, shown};
 use super::plate::{Drawing, Panel, Plate, Row};
 use super::soft::{Soft, soft};
-use super::words::{percent, share};
+use super::words::{of_the_mean, percent, rounded, share};
 use crate::base::error::{Error, Result};
 use crate::base::random::RunKey;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
-use crate::report::{Chart, Dot, Line, Mark, Scale, Series, grouped, short};
+use crate::report::{Chart, Dot, Line, Mark, Scale, Series, grouped};
 use crate::scene::light::Kind;
 use crate::strategy::BuildContext;
 use crate::visibility::stage::Stage;
@@ -72,7 +72,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
                 if rays == 1 { "1 ray".to_owned() } else { format!("{} rays", grouped(rays.into())) }
             ),
             drawing: Drawing::Bitmap(shown(&stage, &found)),
-            caption: format!("RMSE in the penumbra: {} of its mean.", share(error)),
+            caption: format!("RMSE in the penumbra: {}.", of_the_mean(error)),
         });
     }
     let heuristic = format!("allocate:rays={BUDGET},points=random");
@@ -105,7 +105,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
                 "shadow rays: solid angle × radiance × albedo",
             )),
             caption: format!(
-                "RMSE of the whole picture: {} of the mean, with {BUDGET} rays at every pixel {}. It does not know where the penumbra is.",
+                "RMSE of the whole picture: {} of the mean; with {BUDGET} rays at every pixel: {}. The heuristic does not know where the penumbra is.",
                 share(shared),
                 share(fixed)
             ),
@@ -126,7 +126,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             Series { name: "measured".into(), mark: Mark::nth(0, false), points },
             Series { name: "1 / √n from the first on".into(), mark: Mark::line(1, Line::Dashed), points: law },
         ],
-        remarks: vec![(34, format!("measured: n to the power {}", short(exponent)))],
+        remarks: vec![(34, format!("measured: n to the power {}", rounded(exponent)))],
     };
     Ok(Plate {
         title: "6  How many samples".into(),

@@ -94,7 +94,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             title: "No shadow test".into(),
             drawing: picture(0),
             caption: format!(
-                "Light passes through everything: {} of these contributions are blocked in truth.",
+                "Light passes through everything: in truth {} of these contributions are blocked.",
                 percent(all.blocked, all.rays)
             ),
         },
@@ -117,7 +117,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         },
         Panel {
             title: "Shadow rays cast at each pixel".into(),
-            drawing: Drawing::Bitmap(mapped(&stage, &rays, Ramp::up_to(most), "shadow rays")),
+            drawing: Drawing::Bitmap(mapped(&stage, &rays, Ramp::counts(most), "shadow rays")),
             caption: format!(
                 "Early outs save {} of {} shadow rays: {} because the light sends nothing this way, {} because it is below \
                  the horizon of the surface (N·L ≤ 0).",

@@ -3,18 +3,18 @@
 use super::asked::Asked;
 use super::colour::{Ramp, mapped, shown};
 use super::plate::{Drawing, Panel, Plate, Row};
-use super::soft::soft;
-use super::words::metres;
+use super::words::{metres, rounded};
 use crate::base::error::{Error, Result};
 use crate::base::random::Stream;
 use crate::base::triangle::Seen;
-use crate::report::{Chart, Dot, Mark, Scale, Series, short};
+use crate::report::{Chart, Dot, Mark, Scale, Series};
 use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
 use crate::shading::by_angle::seen;
 use crate::stability::{precise, textbook};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// Distances as powers of two of the triangle's size.
 const POWERS: std::ops::RangeInclusive<i32> = 0..=20;
@@ -25,13 +25,20 @@ const DIRECTIONS: usize = 64;
 /// What a right result is shown as: a logarithmic axis has no 0.
 const LEAST: f64 = 1e-17;
 
-/// Side of the grid of points for the picture.
-const SIDE: u32 = 8;
+/// The triangles that face a receiver.
+fn facing<'a>(lights: &'a [Light], at: &'a Receiver) -> impl Iterator<Item = &'a Light> {
+    lights.iter().filter(|light| light.kind() == Kind::Triangle && light.c.dot(at.position - light.position) > 0.0)
+}
 
 /// What a receiver sees of all triangles that face it, in sr, were nothing in between.
 fn solid_angle(lights: &[Light], at: &Receiver) -> f64 {
-    let facing = |light: &&Light| light.kind() == Kind::Triangle && light.c.dot(at.position - light.position) > 0.0;
-    lights.iter().filter(facing).map(|light| seen(light, at).solid_angle().abs()).sum()
+    facing(lights, at).map(|light| seen(light, at).solid_angle().abs()).sum()
+}
+
+/// Radiance in cd/m^2 of a receiver by the closed form, were nothing in between.
+fn radiance(lights: &[Light], at: &Receiver) -> DVec3 {
+    let irradiance = |light: &Light| light.colour.as_dvec3() * seen(light, at).irradiance(at.normal.as_dvec3());
+    facing(lights, at).map(irradiance).sum::<DVec3>() * at.albedo.as_dvec3() / PI
 }
 
 /// Worst relative errors at a distance from the middle of a triangle: of the textbook's formula in f32, and of ours.
@@ -66,22 +73,21 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
     })?;
     let receivers = stage.receivers();
     let angles: Vec<f64> = receivers.par_iter().map(|at| solid_angle(lights, at)).collect();
-    let radiance: Vec<DVec3> = receivers.par_iter().map(|at| soft(&stage, at, SIDE, asked.seed).radiance).collect();
+    let radiance: Vec<DVec3> = receivers.par_iter().map(|at| radiance(lights, at)).collect();
     let most = angles.iter().fold(0.0f64, |most, angle| most.max(*angle));
-    let least = angles.iter().filter(|angle| **angle > 0.0).fold(f64::INFINITY, |least, angle| least.min(*angle));
     let panels = vec![
         Panel {
             title: "The light and what it lights".into(),
             drawing: Drawing::Bitmap(shown(&stage, &radiance)),
-            caption: "Display colours at the scene's exposure.".into(),
+            caption: "What stands in between is left out here: irradiance and solid angle are closed forms.".into(),
         },
         Panel {
             title: "How large it looks from each pixel".into(),
             drawing: Drawing::Bitmap(mapped(&stage, &angles, Ramp::decades(&angles), "solid angle, sr")),
             caption: format!(
-                "From {} to {} sr. A light that fills half of all directions has 2π = 6.28 sr.",
-                short(if most > 0.0 { least } else { 0.0 }),
-                short(most)
+                "At most {} sr; half of all directions are 2π = 6.28 sr. Black: a thousandth of that or less, or the light is seen \
+                 from behind, where it is dark.",
+                rounded(most)
             ),
         },
     ];

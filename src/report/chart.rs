@@ -223,13 +223,15 @@ impl<'a> Axis<'a> {
         // A short axis may hold only one power of ten: 2 and 5 are then needed to read it.
         let short = self.high - self.low < 2.2;
         let steps = |d: i32| (1..10).map(move |step| (d, step));
+        // Nor do the labels of a very long one run into one another.
+        let apart = ((self.high - self.low) / 12.0).ceil().max(1.0) as i32;
         let inside = |v: f64| (self.low..=self.high).contains(&v.log10());
         decades
             .flat_map(steps)
             // From text, so that labels are exact: 3 * 10^-2 is 0.03 and no neighbour of it.
-            .filter_map(|(d, step)| Some((format!("{step}e{d}").parse().ok()?, step)))
-            .filter(|&(v, _)| inside(v))
-            .map(|(v, step)| (v, step == 1, step == 1 || short && (step == 2 || step == 5)))
+            .filter_map(|(d, step)| Some((format!("{step}e{d}").parse().ok()?, step, d % apart == 0)))
+            .filter(|&(v, ..)| inside(v))
+            .map(|(v, step, labelled)| (v, step == 1, step == 1 && labelled || short && (step == 2 || step == 5)))
             .collect()
     }
 
@@ -377,7 +379,7 @@ fn wrapped(parameters: &str) -> Vec<String> {
 
 /// A tick's value: plain where that is short, a power of ten otherwise.
 fn label(value: f64) -> String {
-    if (1e-3..1e5).contains(&value) { format!("{value}") } else { format!("{value:e}") }
+    if value == 0.0 || (1e-3..1e5).contains(&value) { format!("{value}") } else { format!("{value:e}") }
 }
 
 fn style(size: i32, colour: RGBColor, (h, v): (HPos, VPos)) -> TextStyle<'static> {
