@@ -10,6 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::report::{Chart, Dot, Line, Mark, Scale, Series};
 use crate::scene::Scene;
 use crate::scene::light::Shape;
+use crate::scene::receiver::Receiver;
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::Stage;
 use crate::visibility::view::Seen;
@@ -21,8 +22,9 @@ use std::f64::consts::PI;
 /// What the lecture calls the sizes, and how many times the side of the scene's own light each is.
 const SIZES: [(&str, f32); 4] = [("Very small", 0.05), ("Small", 0.3), ("Medium", 1.0), ("Large", 3.0)];
 
-/// Side of the grid of points on each triangle.
+/// Side of the grid of points on each triangle, in pictures and in the profile.
 const SIDE: u32 = 16;
+const FINE: u32 = 64;
 
 /// Which light each triangle belongs to: triangles that share a corner are one light. None for other lights.
 fn lights_of(lights: &[Shape]) -> Vec<Option<usize>> {
@@ -83,30 +85,31 @@ fn side(scene: &Scene) -> Option<f64> {
     extents.values().map(|(_, area)| f64::from(*area).sqrt()).max_by(f64::total_cmp)
 }
 
-/// The run of pixels of one row or column, and of one plane, that goes from light through most of the shadow to light.
+/// Pixels across the shadow: of one row or column and one plane, from light through umbra to light.
+///
+/// Of those that cross at least half as much umbra as any, the one with most penumbra.
 fn crossing(stage: &Stage, found: &[Soft]) -> Option<Vec<[u32; 2]>> {
     let (width, height) = stage.view().resolution();
     let rows = (0..height).map(|y| (0..width).map(|x| [x, y]).collect::<Vec<_>>());
     let columns = (0..width).map(|x| (0..height).map(|y| [x, y]).collect::<Vec<_>>());
-    let normal =
-        |pixel: &[u32; 2]| receiver(stage, *pixel).map(|i| stage.receivers()[i].normal.to_array().map(f32::to_bits));
-    let is_dim =
-        |pixel: &[u32; 2]| receiver(stage, *pixel).is_some_and(|i| found[i].is_penumbra() || found[i].is_umbra());
-    let mut best: (usize, Option<Vec<[u32; 2]>>) = (0, None);
+    let normal = |at: &[u32; 2]| receiver(stage, *at).map(|i| stage.receivers()[i].normal.to_array().map(f32::to_bits));
+    let is = |at: &[u32; 2], kind: fn(&Soft) -> bool| receiver(stage, *at).is_some_and(|i| kind(&found[i]));
+    let mut all: Vec<(usize, usize, Vec<[u32; 2]>)> = Vec::new();
     for line in rows.chain(columns) {
         for run in line.chunk_by(|a, b| normal(a).is_some() && normal(a) == normal(b)) {
-            let (Some(first), Some(last)) = (run.iter().position(is_dim), run.iter().rposition(is_dim)) else {
-                continue;
-            };
-            let dim = last + 1 - first;
-            // As much light before and behind as half of the shadow: an edge can then be told from what it is cast by.
-            let room = dim / 2 + 2;
-            if dim > best.0 && first >= room && run.len() - last > room {
-                best = (dim, Some(run[first - room..=last + room].to_vec()));
+            let dim = |at: &[u32; 2]| is(at, Soft::is_umbra) || is(at, Soft::is_penumbra);
+            let (Some(first), Some(last)) = (run.iter().position(dim), run.iter().rposition(dim)) else { continue };
+            // As much light before and behind as half of the shadow: so an edge can be told from what casts it.
+            let room = (last + 1 - first) / 2 + 2;
+            if first >= room && run.len() - last > room {
+                let count = |kind| run.iter().filter(|at| is(at, kind)).count();
+                all.push((count(Soft::is_umbra), count(Soft::is_penumbra), run[first - room..=last + room].to_vec()));
             }
         }
     }
-    best.1
+    let most = all.iter().map(|(umbra, ..)| *umbra).max()?;
+    all.retain(|(umbra, ..)| 2 * umbra >= most);
+    all.into_iter().max_by_key(|(_, penumbra, _)| *penumbra).map(|(.., pixels)| pixels)
 }
 
 /// The receiver that a pixel within the film sees.
@@ -117,17 +120,17 @@ fn receiver(stage: &Stage, [x, y]: [u32; 2]) -> Option<usize> {
     }
 }
 
-/// Irradiance along some pixels, in lx, over the way from the first of them in m.
-fn profile(stage: &Stage, found: &[Soft], pixels: &[[u32; 2]]) -> Vec<Dot> {
-    let along: Vec<usize> = pixels.iter().filter_map(|pixel| receiver(stage, *pixel)).collect();
-    let receivers = stage.receivers();
-    let Some(first) = along.first().map(|i| receivers[*i].position) else { return Vec::new() };
-    let dot = |i: &usize| {
-        let at = &receivers[*i];
-        let irradiance = PI * f64::from(luminance(found[*i].radiance.as_vec3() / at.albedo.max(Vec3::splat(1e-6))));
-        Dot { x: f64::from(at.position.distance(first)), y: irradiance, low: f64::NAN, high: f64::NAN }
+/// Irradiance along some pixels, in lx, over the distance from the first of them in m.
+fn profile(stage: &Stage, pixels: &[[u32; 2]], seed: u64) -> Vec<Dot> {
+    let along: Vec<_> =
+        pixels.iter().filter_map(|pixel| receiver(stage, *pixel)).map(|i| stage.receivers()[i]).collect();
+    let Some(first) = along.first().map(|at| at.position) else { return Vec::new() };
+    let dot = |at: &Receiver| {
+        let white = Receiver { albedo: Vec3::ONE, ..*at };
+        let y = PI * f64::from(luminance(soft(stage, &white, FINE, seed).radiance.as_vec3()));
+        Dot { x: f64::from(at.position.distance(first)), y, low: f64::NAN, high: f64::NAN }
     };
-    along.iter().map(dot).collect()
+    along.par_iter().map(dot).collect()
 }
 
 pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
@@ -159,14 +162,14 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
                 count(Soft::is_penumbra)
             ),
         });
-        let points = way.as_ref().map_or_else(Vec::new, |way| profile(stage, found, way));
+        let points = way.as_ref().map_or_else(Vec::new, |way| profile(stage, way, asked.seed));
         series.push(Series { name: format!("{} wide", metres(*side)), mark: Mark::line(i, Line::Solid), points });
     }
     let below = panels.split_off(2);
     let chart = Chart {
         title: "Across the shadow".into(),
-        subtitle: "irradiance along the line in the pictures, from its upper or left end".into(),
-        x: Scale { label: "way along the ground, m".into(), logarithmic: false },
+        subtitle: "irradiance along the line in the pictures, from its upper end, or its left one".into(),
+        x: Scale { label: "distance along the line, m".into(), logarithmic: false },
         y: Scale { label: "irradiance, lx".into(), logarithmic: false },
         series,
         remarks: vec![(34, "a step: hard shadow".into()), (22, "a slope: penumbra".into())],

@@ -197,17 +197,17 @@ fn draw_marks(area: &Area<'_>, bitmap: &Bitmap, [x, y, width, height]: [i32; 4])
     };
     // White on black, so that it shows on any ground.
     for (colour, thick) in [(BLACK, 5), (CYAN, 2)] {
-        let stroke = |from, to| area.draw(&PathElement::new(vec![from, to], colour.stroke_width(thick)));
+        let stroke = |from, to, thick| area.draw(&PathElement::new(vec![from, to], colour.stroke_width(thick)));
         if let Some([px, py]) = bitmap.cross {
             let (cx, cy) = (x + along(px, bitmap.width, width), y + along(py, bitmap.height, height));
             for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
-                stroke((cx + 5 * dx, cy + 5 * dy), (cx + 16 * dx, cy + 16 * dy))?;
+                stroke((cx + 5 * dx, cy + 5 * dy), (cx + 16 * dx, cy + 16 * dy), thick)?;
             }
         }
         if let Some(ends) = bitmap.line {
             let [from, to] =
                 ends.map(|[px, py]| (x + along(px, bitmap.width, width), y + along(py, bitmap.height, height)));
-            stroke(from, to)?;
+            stroke(from, to, thick - 1)?;
         }
     }
     Ok(())

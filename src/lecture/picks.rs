@@ -63,10 +63,11 @@ fn chances(sampler: &dyn AnySampler, at: &Receiver, lights: usize) -> Vec<f64> {
     counts.iter().map(|count| if sum > 0.0 { f64::from(*count) / sum } else { 0.0 }).collect()
 }
 
-/// The receiver in the lower half of the film, right of its middle, that is nearest to it: on most streets, the street.
+/// The receiver that is seen a little below and to the right of the film's middle, or near there: down a street, where the
+/// light of several lamps meets.
 fn usual<'s>(stage: &Stage, receivers: &'s [Receiver]) -> Option<&'s Receiver> {
     let (width, height) = stage.view().resolution();
-    let wanted = [0.5 * f64::from(width), 0.75 * f64::from(height)];
+    let wanted = [0.63 * f64::from(width), 0.61 * f64::from(height)];
     let off = |at: &Receiver| {
         let [x, y] = place(stage, at).map(f64::from);
         (x - wanted[0]).powi(2) + (y - wanted[1]).powi(2)

@@ -105,9 +105,11 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
         Series { name: "edge form in f64, as here".into(), mark: Mark::nth(0, false), points: curve(1) },
     ];
     let lost = series[0].points.iter().find(|dot| dot.y >= 1.0).map(|dot| dot.x);
-    let mut remarks =
-        vec![(34, format!("right to the last digit: drawn at {LEAST:e}")), (22, "1: no digit is right".into())];
-    remarks.extend(lost.map(|x| (34, format!("f32 reaches 1 at {}", metres(x)))));
+    let mut remarks = vec![(34, "an error of 1: no digit is right".to_owned())];
+    remarks.extend(lost.map(|x| (22, format!("printed formula: from {} on", metres(x)))));
+    if series.iter().flat_map(|curve| &curve.points).any(|dot| dot.y <= LEAST) {
+        remarks.push((34, format!("no error at all is drawn at {LEAST:e}")));
+    }
     let chart = Chart {
         title: "Error of the solid angle".into(),
         subtitle: format!("the worst of {DIRECTIONS} directions, against the same formula in 31 digits"),

@@ -223,8 +223,8 @@ impl<'a> Axis<'a> {
         // A short axis may hold only one power of ten: 2 and 5 are then needed to read it.
         let short = self.high - self.low < 2.2;
         let steps = |d: i32| (1..10).map(move |step| (d, step));
-        // Nor do the labels of a very long one run into one another.
-        let apart = ((self.high - self.low) / 12.0).ceil().max(1.0) as i32;
+        // Labels stand 24 pixels or more apart.
+        let apart = (24.0 * (self.high - self.low) / f64::from((self.to - self.from).abs())).ceil().max(1.0) as i32;
         let inside = |v: f64| (self.low..=self.high).contains(&v.log10());
         decades
             .flat_map(steps)
@@ -254,7 +254,7 @@ impl<'a> Axis<'a> {
 /// Values to mark along a scale, each with its place between the ends, 0 to 1, and its label.
 #[cfg(feature = "cli")]
 pub(crate) fn ticks(scale: &Scale, [low, high]: [f64; 2]) -> Vec<(f64, String)> {
-    let axis = Axis { scale, low: scale.place(low), high: scale.place(high), from: 0, to: 1 };
+    let axis = Axis { scale, low: scale.place(low), high: scale.place(high), from: 0, to: WIDTH };
     let place = |value: f64| (scale.place(value) - axis.low) / (axis.high - axis.low);
     let labelled = axis.ticks().into_iter().filter(|(_, _, labelled)| *labelled);
     labelled.map(|(value, _, _)| (place(value), label(value))).collect()
