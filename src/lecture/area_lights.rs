@@ -189,7 +189,7 @@ mod tests {
     fn under_a_panel() -> Scene {
         let lights = small::panel(Vec3::new(-3.5, -2.0, 4.0), Vec3::Y, Vec3::X, 400.0);
         let mut parts = small::ground(12.0, lights.to_vec());
-        parts.surfaces.extend(small::cuboid(Vec3::new(-0.4, -0.4, 0.0), Vec3::new(0.4, 0.4, 1.6)));
+        parts.surfaces.extend(small::cuboid(Vec3::new(-1.4, -1.4, 0.0), Vec3::new(1.4, 1.4, 2.6)));
         Scene::new(parts).expect("a scene")
     }
 

@@ -158,9 +158,9 @@ mod tests {
         assert!((shares.iter().map(|share| share.exact).sum::<f64>() - 1.0).abs() < 1e-9);
         assert!(shares.is_sorted_by(|a, b| a.exact >= b.exact));
         let apart = |which: usize| shares.iter().map(|share| (share.exact - share.chances[which]).abs()).sum::<f64>();
-        for which in 0..STRATEGIES.len() {
+        for (which, (name, _)) in STRATEGIES.iter().enumerate() {
             let sum: f64 = shares.iter().map(|share| share.chances[which]).sum();
-            assert!((sum - 1.0).abs() < 1e-5, "{}: {sum}", STRATEGIES[which].0);
+            assert!((sum - 1.0).abs() < 1e-5, "{name}: {sum}");
         }
         assert!(apart(2) < apart(0) && apart(2) < apart(1), "{} {} {}", apart(0), apart(1), apart(2));
     }

@@ -10,7 +10,7 @@ use crate::base::triangle::{Projected, Seen, SolidAngle, uniform_point};
 use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
 use crate::shading::by_angle::seen;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Side of the grid of random numbers: one point from each cell of it is drawn.
 const SIDE: u32 = 16;
@@ -132,7 +132,7 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
             Box::new(|u| (projected.sample(u), Weight::Irradiance(projected.irradiance()))),
         ),
     ];
-    let corners = light.corners().map(|corner| corner.as_dvec3());
+    let corners = light.corners().map(Vec3::as_dvec3);
     let (right, up) = axes(light);
     let flat = |p: DVec3| [right.dot(p - corners[0]), up.dot(p - corners[0])];
     let (front, size) = (light.c.as_dvec3().normalize(), f64::from(light.area()));
