@@ -48,6 +48,8 @@ mod export;
 pub mod image;
 #[cfg(feature = "measure")]
 mod inspect;
+#[cfg(feature = "cli")]
+mod lecture;
 #[cfg(feature = "measure")]
 mod measure;
 #[cfg(feature = "peers")]

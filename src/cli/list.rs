@@ -1,9 +1,10 @@
-//! `citylights list`: which strategies, scenes and studies are there?
+//! `citylights list`: which strategies, scenes, studies and chapters of the lecture are there?
 
 use super::home::Home;
 use super::outcome::Outcome;
 use super::terminal::print;
 use crate::base::error::Error;
+use crate::lecture::{CHAPTERS, Chapter};
 use crate::strategy::Configured;
 use crate::study::{Entry, STUDIES};
 use clap::{Args, ValueEnum};
@@ -25,6 +26,7 @@ enum What {
     Strategies,
     Scenes,
     Studies,
+    Lecture,
 }
 
 pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
@@ -32,6 +34,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         What::Strategies => home.registry.all()?.iter().map(strategy).collect(),
         What::Scenes => scenes(Path::new("scenes"))?,
         What::Studies => studies(),
+        What::Lecture => CHAPTERS.iter().map(chapter).collect(),
     };
     if arguments.json {
         print(&format!(
@@ -74,6 +77,14 @@ fn studies() -> Vec<Item> {
         json: json!({ "name": study.name, "question": study.question }),
     };
     STUDIES.iter().map(item).collect()
+}
+
+fn chapter(chapter: &Chapter) -> Item {
+    let Chapter { number, name, question, scene, .. } = chapter;
+    Item {
+        text: format!("{name}\n    {question}\n    chapter {number}, scene: {scene}\n"),
+        json: json!({ "number": number, "name": name, "question": question, "scene": scene }),
+    }
 }
 
 /// The recipes of a folder; what a scene is for stands in the comment at its head.

@@ -24,6 +24,7 @@ mod export;
 mod folders;
 mod home;
 mod inspect;
+mod lecture;
 mod list;
 mod new_strategy;
 mod outcome;

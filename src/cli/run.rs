@@ -4,8 +4,8 @@ use super::home::Home;
 use super::outcome::Outcome;
 use super::terminal::say;
 use super::{
-    compare, diff_image, explain, export, inspect, list, new_strategy, reference, render, report, stability, study,
-    verify,
+    compare, diff_image, explain, export, inspect, lecture, list, new_strategy, reference, render, report, stability,
+    study, verify,
 };
 use crate::base::error::Error;
 use crate::record::Program;
@@ -43,9 +43,11 @@ enum Verb {
     Export(export::Arguments),
     /// The experiments behind results/, by name
     Study(study::Arguments),
+    /// The labelled picture of a chapter of docs/LECTURE.md: shadows, area lights, many lights
+    Lecture(lecture::Arguments),
     /// Write a crate with a strategy of your own
     NewStrategy(new_strategy::Arguments),
-    /// Name the strategies, the scenes or the studies
+    /// Name the strategies, the scenes, the studies or the chapters of the lecture
     List(list::Arguments),
     /// Make tables and plots again from the raw rows of a result folder
     Report(report::Arguments),
@@ -76,6 +78,7 @@ pub fn run_with(registry: &Registry, program: &Program) -> ExitCode {
         Verb::Inspect(arguments) => inspect::run(arguments),
         Verb::Export(arguments) => export::run(arguments),
         Verb::Study(arguments) => study::run(arguments, home),
+        Verb::Lecture(arguments) => lecture::run(arguments, home),
         Verb::NewStrategy(arguments) => new_strategy::run(arguments, home),
         Verb::List(arguments) => list::run(arguments, home),
         Verb::Report(arguments) => report::run(arguments),

@@ -31,7 +31,7 @@ pub(super) struct SceneOptions {
     /// Factor from radiance to displayed value, instead of an exposure value
     #[arg(long, value_name = "X", value_parser = positive)]
     exposure: Option<f32>,
-    /// How shadow rays keep off their own surfaces
+    /// How shadow rays keep off their own surfaces: scaled, origin-push, t-min, ulps; none, which is wrong on purpose, shows why
     #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
     offset: Offset,
     /// How the point on a triangle light is drawn: area, solid-angle, projected, auto; references always take area
@@ -75,9 +75,8 @@ impl SceneOptions {
         add("camera", self.camera.clone());
         add("ev100", self.ev100.map(|ev100| ev100.to_string()));
         add("exposure", self.exposure.map(|exposure| exposure.to_string()));
-        let offset =
-            Offset::NAMED.iter().find(|(_, offset)| *offset == self.offset).filter(|_| self.offset != Offset::SCALED);
-        add("offset", offset.map(|(name, _)| (*name).to_owned()));
+        let offset = Offset::all().find(|(_, offset)| *offset == self.offset).filter(|_| self.offset != Offset::SCALED);
+        add("offset", offset.map(|(name, _)| name.to_owned()));
         let sampling = Some(self.light_sampling).filter(|by| *by != LightSampling::default());
         add("light-sampling", sampling.map(|by| by.name().to_owned()));
         add("leave-out", (self.leave_out == LeaveOut::No).then(|| "off".to_owned()));
@@ -115,9 +114,13 @@ impl SceneOptions {
 }
 
 fn offset(text: &str) -> Result<Offset, String> {
-    let known = Offset::NAMED.map(|(name, _)| name);
+    let known: Vec<&str> = Offset::all().map(|(name, _)| name).collect();
     Offset::named(text).ok_or_else(|| {
-        format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
+        format!(
+            "one of {} is right; near it: {}",
+            known.join(", "),
+            names::near(text, known.iter().copied()).join(", ")
+        )
     })
 }
 

@@ -22,8 +22,12 @@ const MAGENTA: [u8; 3] = [255, 0, 255];
 /// A picture without pixels, or with another number of them than its sides say.
 pub(crate) fn encode(picture: &Picture, exposure: f32) -> Result<Vec<u8>> {
     picture.check()?;
-    let texels: Vec<[u8; 3]> = picture.pixels.iter().map(|pixel| texel(*pixel, exposure)).collect();
-    encode_texels(picture.width, picture.height, &texels)
+    encode_texels(picture.width, picture.height, &texels(&picture.pixels, exposure))
+}
+
+/// Pixels as [`encode`] shows them.
+pub(crate) fn texels(pixels: &[[f32; 3]], exposure: f32) -> Vec<[u8; 3]> {
+    pixels.iter().map(|pixel| texel(*pixel, exposure)).collect()
 }
 
 /// The bytes of a PNG file of these 8-bit sRGB colours, row by row from the top.

@@ -10,11 +10,13 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
+/// What is drawn on.
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Whether it was.
+pub(crate) type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// Size of the picture in pixels; a long legend makes it taller.
-const WIDTH: i32 = 1200;
+pub(crate) const WIDTH: i32 = 1200;
 const HEIGHT: i32 = 720;
 /// The plot's own rectangle.
 const LEFT: i32 = 88;
@@ -24,51 +26,51 @@ const BELOW: i32 = 74;
 /// Where the legend begins.
 const LEGEND: i32 = 872;
 
-const INK: RGBColor = RGBColor(40, 40, 40);
-const FAINT: RGBColor = RGBColor(110, 110, 110);
+pub(crate) const INK: RGBColor = RGBColor(40, 40, 40);
+pub(crate) const FAINT: RGBColor = RGBColor(110, 110, 110);
 
 /// A plot before it is drawn.
-pub(super) struct Chart {
+pub(crate) struct Chart {
     /// What it is.
-    pub(super) title: String,
+    pub(crate) title: String,
     /// What is drawn, in smaller letters.
-    pub(super) subtitle: String,
+    pub(crate) subtitle: String,
     /// The horizontal axis.
-    pub(super) x: Scale,
+    pub(crate) x: Scale,
     /// The vertical axis.
-    pub(super) y: Scale,
+    pub(crate) y: Scale,
     /// The curves, in the legend's order; those without points are not named.
-    pub(super) series: Vec<Series>,
+    pub(crate) series: Vec<Series>,
     /// What stands under the legend, each line with its distance from the one before in pixels.
-    pub(super) remarks: Vec<(i32, String)>,
+    pub(crate) remarks: Vec<(i32, String)>,
 }
 
 /// What an axis measures.
-pub(super) struct Scale {
+pub(crate) struct Scale {
     /// What is written along it.
-    pub(super) label: String,
+    pub(crate) label: String,
     /// Whether it is logarithmic.
-    pub(super) logarithmic: bool,
+    pub(crate) logarithmic: bool,
 }
 
 /// A curve.
-pub(super) struct Series {
+pub(crate) struct Series {
     /// Its name; what follows a `:` stands below it.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Its look.
-    pub(super) mark: Mark,
+    pub(crate) mark: Mark,
     /// Its points from left to right: only what the axes can show.
-    pub(super) points: Vec<Dot>,
+    pub(crate) points: Vec<Dot>,
 }
 
 /// A point of a curve.
 #[derive(Clone, Copy)]
-pub(super) struct Dot {
-    pub(super) x: f64,
-    pub(super) y: f64,
+pub(crate) struct Dot {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
     /// The ends of the interval of `y`: infinite where the runs cannot tell one, both not finite where it has none.
-    pub(super) low: f64,
-    pub(super) high: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 impl Dot {
@@ -79,7 +81,7 @@ impl Dot {
 
 impl Scale {
     /// Whether the axis can show a value.
-    pub(super) fn shows(&self, value: f64) -> bool {
+    pub(crate) fn shows(&self, value: f64) -> bool {
         value.is_finite() && (!self.logarithmic || value > 0.0)
     }
 
@@ -90,42 +92,44 @@ impl Scale {
 
 impl Chart {
     /// The plot as SVG.
-    pub(super) fn svg(&self) -> Result<String> {
+    pub(crate) fn svg(&self) -> Result<String> {
         let mut svg = String::new();
         self.draw(&mut svg).map_err(|e| Error::Invalid(format!("cannot draw the plot of `{}`: {e}", self.title)))?;
         Ok(svg)
     }
 
     fn draw(&self, svg: &mut String) -> Drawn {
-        let legend = self.legend();
-        let height = HEIGHT.max(legend.last().map_or(0, |line| line.y) + 40);
+        let height = self.height(HEIGHT);
         let area = SVGBackend::with_string(svg, (WIDTH as u32, height as u32)).into_drawing_area();
         area.fill(&WHITE)?;
-        text(&area, &self.title, (LEFT, 34), 27, INK, (HPos::Left, VPos::Center))?;
-        text(&area, &self.subtitle, (LEFT, 61), 18, FAINT, (HPos::Left, VPos::Center))?;
+        self.draw_on(&area, height)?;
+        area.present()
+    }
+
+    /// How tall it is at least: as wanted, unless its legend is longer.
+    pub(crate) fn height(&self, wanted: i32) -> i32 {
+        wanted.max(self.legend().last().map_or(0, |line| line.y) + 40)
+    }
+
+    /// Draws the plot on an area of the full width and of a height.
+    pub(crate) fn draw_on(&self, area: &Area<'_>, height: i32) -> Drawn {
+        text(area, &self.title, (LEFT, 34), 27, INK, (HPos::Left, VPos::Center))?;
+        text(area, &self.subtitle, (LEFT, 61), 18, FAINT, (HPos::Left, VPos::Center))?;
         let points = || self.series.iter().flat_map(|series| &series.points);
         if points().next().is_none() {
-            text(
-                &area,
-                "no points to draw",
-                ((LEFT + RIGHT) / 2, height / 2),
-                20,
-                FAINT,
-                (HPos::Center, VPos::Center),
-            )?;
+            text(area, "no points to draw", ((LEFT + RIGHT) / 2, height / 2), 20, FAINT, (HPos::Center, VPos::Center))?;
         } else {
             let frame = Frame {
                 x: Axis::over(&self.x, points().map(|p| p.x), LEFT, RIGHT),
                 // As tall as it is wide at most, however long the legend.
                 y: self.upright((height - BELOW).min(TOP + RIGHT - LEFT), TOP),
             };
-            grid(&area, &frame)?;
-            self.series.iter().try_for_each(|series| band(&area, &frame, series))?;
-            self.series.iter().try_for_each(|series| line(&area, &frame, series))?;
-            self.series.iter().try_for_each(|series| arrows(&area, &frame, series))?;
+            grid(area, &frame)?;
+            self.series.iter().try_for_each(|series| band(area, &frame, series))?;
+            self.series.iter().try_for_each(|series| line(area, &frame, series))?;
+            self.series.iter().try_for_each(|series| arrows(area, &frame, series))?;
         }
-        legend.iter().try_for_each(|line| line.draw(&area))?;
-        area.present()
+        self.legend().iter().try_for_each(|line| line.draw(area))
     }
 
     /// The vertical axis between two pixels. It holds the points, and the ends of their intervals unless they are far off.
@@ -219,13 +223,15 @@ impl<'a> Axis<'a> {
         // A short axis may hold only one power of ten: 2 and 5 are then needed to read it.
         let short = self.high - self.low < 2.2;
         let steps = |d: i32| (1..10).map(move |step| (d, step));
+        // Labels stand 24 pixels or more apart.
+        let apart = (24.0 * (self.high - self.low) / f64::from((self.to - self.from).abs())).ceil().max(1.0) as i32;
         let inside = |v: f64| (self.low..=self.high).contains(&v.log10());
         decades
             .flat_map(steps)
             // From text, so that labels are exact: 3 * 10^-2 is 0.03 and no neighbour of it.
-            .filter_map(|(d, step)| Some((format!("{step}e{d}").parse().ok()?, step)))
-            .filter(|&(v, _)| inside(v))
-            .map(|(v, step)| (v, step == 1, step == 1 || short && (step == 2 || step == 5)))
+            .filter_map(|(d, step)| Some((format!("{step}e{d}").parse().ok()?, step, d % apart == 0)))
+            .filter(|&(v, ..)| inside(v))
+            .map(|(v, step, labelled)| (v, step == 1, step == 1 && labelled || short && (step == 2 || step == 5)))
             .collect()
     }
 
@@ -243,6 +249,15 @@ impl<'a> Axis<'a> {
             .map(|v| (v, v == 0.0, true))
             .collect()
     }
+}
+
+/// Values to mark along a scale, each with its place between the ends, 0 to 1, and its label.
+#[cfg(feature = "cli")]
+pub(crate) fn ticks(scale: &Scale, [low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    let axis = Axis { scale, low: scale.place(low), high: scale.place(high), from: 0, to: WIDTH };
+    let place = |value: f64| (scale.place(value) - axis.low) / (axis.high - axis.low);
+    let labelled = axis.ticks().into_iter().filter(|(_, _, labelled)| *labelled);
+    labelled.map(|(value, _, _)| (place(value), label(value))).collect()
 }
 
 /// Both axes.
@@ -364,13 +379,21 @@ fn wrapped(parameters: &str) -> Vec<String> {
 
 /// A tick's value: plain where that is short, a power of ten otherwise.
 fn label(value: f64) -> String {
-    if (1e-3..1e5).contains(&value) { format!("{value}") } else { format!("{value:e}") }
+    if value == 0.0 || (1e-3..1e5).contains(&value) { format!("{value}") } else { format!("{value:e}") }
 }
 
 fn style(size: i32, colour: RGBColor, (h, v): (HPos, VPos)) -> TextStyle<'static> {
     ("Helvetica, Arial, sans-serif", size).into_font().color(&colour).pos(Pos::new(h, v))
 }
 
-fn text(area: &Area, what: &str, at: (i32, i32), size: i32, colour: RGBColor, anchor: (HPos, VPos)) -> Drawn {
+/// Writes a line.
+pub(crate) fn text(
+    area: &Area,
+    what: &str,
+    at: (i32, i32),
+    size: i32,
+    colour: RGBColor,
+    anchor: (HPos, VPos),
+) -> Drawn {
     area.draw(&Text::new(what.to_owned(), at, style(size, colour, anchor)))
 }

@@ -27,7 +27,7 @@ const SHAPES: [&[(i32, i32)]; 5] = [
 
 /// How the points of a curve are joined.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Line {
+pub(crate) enum Line {
     /// Most curves.
     Solid,
     /// With hollow shapes.
@@ -38,51 +38,59 @@ pub(super) enum Line {
 
 /// The look of one strategy.
 #[derive(Clone, Copy)]
-pub(super) struct Mark {
+pub(crate) struct Mark {
     /// Of lines and shapes.
-    pub(super) colour: RGBColor,
-    shape: &'static [(i32, i32)],
+    pub(crate) colour: RGBColor,
+    /// None where the points are too many to be marked.
+    shape: Option<&'static [(i32, i32)]>,
     /// Between its shapes.
-    pub(super) line: Line,
+    pub(crate) line: Line,
 }
 
 impl Mark {
     /// The look of the `nth` strategy that is neither floor nor ceiling: 35 differ. Floor and ceiling are grey and
     /// black.
-    pub(super) fn new(claim: &Claim, nth: usize) -> Self {
+    pub(crate) fn new(claim: &Claim, nth: usize) -> Self {
         match claim {
-            Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: SHAPES[1], line: Line::Solid },
-            Claim::Ceiling | Claim::Oracle => Self { colour: BLACK, shape: SHAPES[1], line: Line::Solid },
+            Claim::Floor => Self { colour: RGBColor(150, 150, 150), shape: Some(SHAPES[1]), line: Line::Solid },
+            Claim::Ceiling | Claim::Oracle => Self { colour: BLACK, shape: Some(SHAPES[1]), line: Line::Solid },
             Claim::External { .. } => Self { line: Line::Dotted, ..Self::nth(nth, false) },
             Claim::Unbiased | Claim::Biased { .. } => Self::nth(nth, matches!(claim, Claim::Biased { .. })),
         }
     }
 
     /// The look of the `nth` curve, dashed with hollow shapes if `hollow`: 35 differ.
-    pub(super) fn nth(nth: usize, hollow: bool) -> Self {
+    pub(crate) fn nth(nth: usize, hollow: bool) -> Self {
         // 7 and 5 have no common divisor: neighbours differ in both.
         Self {
             colour: COLOURS[nth % COLOURS.len()],
-            shape: SHAPES[nth % SHAPES.len()],
+            shape: Some(SHAPES[nth % SHAPES.len()]),
             line: if hollow { Line::Dashed } else { Line::Solid },
         }
     }
 
+    /// The line of the `nth` curve without its shapes.
+    #[cfg(feature = "cli")]
+    pub(crate) fn line(nth: usize, line: Line) -> Self {
+        Self { shape: None, line, ..Self::nth(nth, false) }
+    }
+
     /// Draws the shape about a pixel.
-    pub(super) fn draw<DB: DrawingBackend>(
+    pub(crate) fn draw<DB: DrawingBackend>(
         &self,
         area: &DrawingArea<DB, plotters::coord::Shift>,
         (x, y): (i32, i32),
     ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
+        let Some(shape) = self.shape else { return Ok(()) };
         // The inside hides the lines behind it, so that hollow shapes read as hollow.
         let hollow = self.line == Line::Dashed;
         let inside = if hollow { WHITE.filled() } else { self.colour.filled() };
         let edge = if hollow { self.colour.stroke_width(2) } else { WHITE.stroke_width(1) };
-        if self.shape.is_empty() {
+        if shape.is_empty() {
             area.draw(&Circle::new((x, y), 6, inside))?;
             return area.draw(&Circle::new((x, y), 6, edge));
         }
-        let mut corners: Vec<(i32, i32)> = self.shape.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+        let mut corners: Vec<(i32, i32)> = shape.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
         area.draw(&Polygon::new(corners.clone(), inside))?;
         // The outline goes on to the second corner, so that the joint at the first one closes.
         corners.extend_from_within(..2);

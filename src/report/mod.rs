@@ -19,9 +19,15 @@ mod study;
 mod sweep;
 mod table;
 
+#[cfg(feature = "cli")]
+pub(crate) use chart::{Area, Chart, Dot, Drawn, FAINT, INK, Scale, Series, WIDTH, text, ticks};
+#[cfg(feature = "cli")]
+pub(crate) use mark::{Line, Mark};
 pub(crate) use number::{grouped, short};
 pub(crate) use page::{page, section};
 pub(crate) use plot::plot;
+#[cfg(feature = "cli")]
+pub(crate) use sheet::broken;
 pub(crate) use study::study_text;
 pub(crate) use table::table;
 

@@ -180,7 +180,7 @@ impl Sheet {
 }
 
 /// `text` in lines of at most `width` where words allow it; further lines are indented.
-pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn broken(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {

@@ -12,6 +12,8 @@ pub mod receiver;
 use crate::base::colour::exposure;
 use crate::base::error::{Error, Result};
 use camera::Camera;
+#[cfg(feature = "study")]
+use glam::DQuat;
 use glam::{DVec3, Vec3};
 use light::{Kind, Light, Shape};
 use std::ops::Range;
@@ -68,6 +70,27 @@ pub struct Parts {
     pub ev100: Option<f32>,
     /// What a reader should know.
     pub notes: Vec<String>,
+}
+
+#[cfg(feature = "study")]
+impl Parts {
+    /// With `far` metres added to every coordinate, which is then rounded to f32 where it ends up. (A recipe that is written
+    /// far away loses nothing: its [origin](Self::origin) moves instead.)
+    pub(crate) fn baked(mut self, far: f64) -> Self {
+        let bake = |place: Vec3| (place.as_dvec3() + far).as_vec3();
+        for surface in &mut self.surfaces {
+            surface.corners = surface.corners.map(bake);
+        }
+        for light in &mut self.lights {
+            match light {
+                Shape::Point { position, .. } | Shape::Spot { position, .. } => *position = bake(*position),
+                Shape::Triangle { corners, .. } => *corners = corners.map(bake),
+                Shape::Directional { .. } => {}
+            }
+        }
+        self.camera = self.camera.turned(bake(self.camera.position()), DQuat::IDENTITY);
+        self
+    }
 }
 
 /// A checked scene: everything finite, no light or surface without area, every material known.

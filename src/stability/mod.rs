@@ -13,6 +13,8 @@ pub(crate) mod precise;
 mod reach;
 mod tally;
 pub(crate) mod textbook;
+#[cfg(feature = "study")]
+pub(crate) mod tracer;
 mod trees;
 pub(crate) mod triangles;
 pub(crate) mod vectors;

@@ -47,9 +47,19 @@ impl Offset {
     /// an edge.
     pub const SCALED: Self = Self { push_relative: PUSH, far_relative: PUSH, horizons: true, ..Self::ORIGIN_PUSH };
 
-    /// The policies by name, default first.
+    /// None at either end: wrong on purpose, to show what offsets are for. A ray starts at the receiver's position as it was
+    /// rounded, on one side of its own surface or the other by chance, and ends on the light: half of all points are dark
+    /// without reason, which is called acne.
+    pub(crate) const NONE: Self = Self { push: 0.0, far: 0.0, ..Self::ORIGIN_PUSH };
+
+    /// The policies that are right near the origin by name, default first.
     pub const NAMED: [(&'static str, Self); 4] =
         [("scaled", Self::SCALED), ("origin-push", Self::ORIGIN_PUSH), ("t-min", Self::T_MIN), ("ulps", Self::ULPS)];
+
+    /// All policies that a user can name: the [right ones](Self::NAMED), then the one that is wrong on purpose.
+    pub(crate) fn all() -> impl Iterator<Item = (&'static str, Self)> {
+        Self::NAMED.into_iter().chain([("none", Self::NONE)])
+    }
 
     /// The same policy with the far end left where it is: the light's own surface then blocks it. For tests.
     #[cfg(test)]
@@ -59,7 +69,7 @@ impl Offset {
 
     /// The policy of that name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::NAMED.iter().find(|(known, _)| *known == name).map(|(_, policy)| *policy)
+        Self::all().find(|(known, _)| *known == name).map(|(_, policy)| policy)
     }
 
     /// The ray from a receiver to a point of `light`, `distance` metres away in a unit `direction`; infinite for the
@@ -182,6 +192,17 @@ mod tests {
         assert_eq!(up(-100_000.0), 2.0, "along the normal on the other side of 0 too");
         assert_eq!(up(0.0), 1.0 / 65_536.0);
         assert_eq!(stepped(Vec3::splat(2_048.0), Vec3::Z * 256.0).x, 2_048.0);
+    }
+
+    #[test]
+    fn no_offset_starts_at_the_rounded_point_and_ends_on_the_light() {
+        let position = Vec3::new(1_234.5, -6.7, 0.1);
+        let at = Receiver { position, normal: Vec3::Z, view: Vec3::Z, albedo: Vec3::ONE, pixel: 0, surface: 0 };
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let light = Light::from(crate::scene::light::Shape::Triangle { corners, radiance: Vec3::ONE });
+        let none = Offset::named("none").expect("a name");
+        assert_eq!(none.segment(&at, &light, Vec3::Z, 2.0), Segment::bare(position, Vec3::Z * 2.0, 0.0, 1.0));
+        assert!(Offset::NAMED.iter().all(|(_, offset)| *offset != none), "what is right near the origin is not this");
     }
 
     #[test]

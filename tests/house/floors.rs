@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every room and its floor, as in the design.
-const FLOORS: [(&str, u8); 24] = [
+const FLOORS: [(&str, u8); 25] = [
     ("base", 0),
     ("scene", 1),
     ("record", 1),
@@ -29,6 +29,7 @@ const FLOORS: [(&str, u8); 24] = [
     ("bench", 10),
     ("calls", 11),
     ("study", 11),
+    ("lecture", 11),
     ("prelude", 12),
     ("cli", 12),
 ];

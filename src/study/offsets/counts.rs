@@ -1,23 +1,21 @@
 //! What becomes of the same rays under each policy: how many are acne, how many are leaks?
 
 use super::geometry;
-use super::tracer::{Tracer, Truth, Way};
 use crate::base::error::Result;
 use crate::base::random::Stream;
-use crate::base::triangle::uniform_point;
 use crate::record::study::Cell;
 use crate::scene::Scene;
 use crate::scene::light::{Kind, Light};
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
 use crate::shading::contribution::{Arrival, contribution};
+use crate::stability::tracer::{Tracer, Truth, tolerance};
 use crate::visibility::occluders::Occluders;
 use crate::visibility::offset::Offset;
-use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
-/// The policies: the default, then the others.
+/// The policies: the default, then the others. Not the one that is wrong on purpose: half of its rays are acne anywhere.
 pub(super) const POLICIES: [(&str, Offset); 4] = Offset::NAMED;
 
 /// What became of rays.
@@ -78,12 +76,9 @@ impl Counts {
 
 /// The same rays of `count` receivers under each policy.
 pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; POLICIES.len()]> {
-    let (low, high) = scene.bounds();
-    let tolerance = 1e-4 + f64::from(4.0 * f32::EPSILON * low.abs().max(high.abs()).max_element());
+    let tolerance = tolerance(scene);
     let occluders = Occluders::new(scene);
-    let emitters = || scene.lights().iter().filter(|light| light.kind() == Kind::Triangle);
-    let corners = scene.surfaces().iter().map(|surface| surface.corners).chain(emitters().map(Light::corners));
-    let tracer = Tracer::new(corners);
+    let tracer = Tracer::new(scene);
     let found = (0..count).into_par_iter().map(|number| {
         let mut stream = Stream::keyed(&[seed, u64::from_le_bytes(*b"offsets\0"), number as u64]);
         let at = geometry::receiver(scene, &mut stream, number);
@@ -94,7 +89,7 @@ pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; 
             emitter += usize::from(own.is_some());
             let uv = stream.uniform2();
             let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, uv, &at) else { continue };
-            let (truth, exact) = truth(&tracer, tolerance, &at, (light, own), uv);
+            let (truth, exact) = tracer.sees(tolerance, &at, (light, own), uv);
             for ((_, offset), counts) in POLICIES.iter().zip(&mut counts) {
                 counts.note(truth, exact, seen(&occluders, offset, &at, light, &arrival));
             }
@@ -111,34 +106,4 @@ pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; 
 /// What the renderer sees.
 fn seen(occluders: &Occluders, offset: &Offset, at: &Receiver, light: &Light, arrival: &Arrival) -> bool {
     occluders.visible(&offset.segment(at, light, arrival.direction, arrival.distance))
-}
-
-/// What f64 sees, with the tolerance and whether it sees the light without; `own` is the light's triangle.
-fn truth(
-    tracer: &Tracer,
-    tolerance: f64,
-    at: &Receiver,
-    (light, own): (&Light, Option<usize>),
-    uv: [f32; 2],
-) -> (Truth, bool) {
-    let surface = at.surface as usize;
-    let origin = tracer.on_plane(surface, at.position);
-    let side = at.normal.as_dvec3().dot(tracer.unit_normal(surface)).signum();
-    let way = if light.kind() == Kind::Directional {
-        Way { origin, direction: light.position.as_dvec3().normalize(), length: f64::INFINITY }
-    } else {
-        let [b1, b2] = if own.is_some() { uniform_point(uv).map(f64::from) } else { [0.0; 2] };
-        let [p, a, b] = [light.position, light.a, light.b].map(Vec3::as_dvec3);
-        let to_light: DVec3 = p + a * b1 + b * b2 - origin;
-        Way { origin, direction: to_light.normalize(), length: to_light.length() }
-    };
-    // What is all but at an end's horizon may come to lie on either side of it.
-    let above = side * tracer.unit_normal(surface).dot(way.direction * way.length.min(1e6));
-    let before = own.map_or(f64::INFINITY, |own| tracer.height(own, origin));
-    let own = [Some(surface), own];
-    match tracer.truth(&way, own, tolerance) {
-        Truth::Lit if above.min(before) >= tolerance => (Truth::Lit, true),
-        Truth::Dark if above.min(before) >= tolerance => (Truth::Dark, false),
-        _ => (Truth::Undecided, above.min(before) > 0.0 && tracer.truth(&way, own, 0.0) == Truth::Lit),
-    }
 }

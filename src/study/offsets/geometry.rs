@@ -39,26 +39,19 @@ impl Geometry {
             Self::Grazing => grazing(),
             Self::Concave => concave(),
         };
-        let bake = |place: Vec3| (place.as_dvec3() + far).as_vec3();
-        let surfaces =
-            surfaces.into_iter().map(|surface| Surface { corners: surface.corners.map(bake), ..surface }).collect();
-        let lights = lights.into_iter().map(|light| match light {
-            Shape::Point { position, intensity } => Shape::Point { position: bake(position), intensity },
-            Shape::Triangle { corners, radiance } => Shape::Triangle { corners: corners.map(bake), radiance },
-            Shape::Spot { .. } | Shape::Directional { .. } => light,
-        });
-        Scene::new(Parts {
+        let parts = Parts {
             name: self.name().into(),
             seed: 0,
             origin: DVec3::ZERO,
-            lights: lights.collect(),
+            lights,
             groups: Vec::new(),
             surfaces,
             materials: vec![Material { name: "grey".into(), albedo: Vec3::splat(ALBEDO), street: false }],
-            camera: Camera::new(bake(Vec3::splat(40.0)), bake(Vec3::ZERO), 60.0, 1, 1)?,
+            camera: Camera::new(Vec3::splat(40.0), Vec3::ZERO, 60.0, 1, 1)?,
             ev100: None,
             notes: Vec::new(),
-        })
+        };
+        Scene::new(parts.baked(far))
     }
 }
 

@@ -9,12 +9,11 @@
 //! | what becomes of the same rays under each policy? | `counts` |
 //! | how far from the origin does a policy start to fail? | `starts` |
 //! | what stands in the scenes, and where are receivers? | `geometry` |
-//! | is a light seen, as f64 tells? | `tracer` |
+//! | is a light seen, as f64 tells? | `stability::tracer` |
 
 mod counts;
 mod geometry;
 mod run;
 mod starts;
-mod tracer;
 
 pub(super) use run::ENTRY;

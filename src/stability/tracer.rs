@@ -7,11 +7,15 @@
 //! begins or ends at some triangle, nearer than that; nearer measured across the ray, so that a shift of the ray by the
 //! tolerance could change the answer, and only then.
 
+use crate::base::triangle::uniform_point;
+use crate::scene::Scene;
+use crate::scene::light::{Kind, Light};
+use crate::scene::receiver::Receiver;
 use glam::{DVec3, Vec3};
 
 /// What is there on the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Truth {
+pub(crate) enum Truth {
     /// Nothing.
     Lit,
     /// Something.
@@ -21,18 +25,24 @@ pub(super) enum Truth {
 }
 
 /// A straight way, in metres.
-pub(super) struct Way {
+struct Way {
     /// Its start.
-    pub(super) origin: DVec3,
+    origin: DVec3,
     /// Unit vector along it.
-    pub(super) direction: DVec3,
+    direction: DVec3,
     /// Its length; may be infinite.
-    pub(super) length: f64,
+    length: f64,
 }
 
 /// Triangles as they were rounded.
-pub(super) struct Tracer {
+pub(crate) struct Tracer {
     triangles: Vec<Triangle>,
+}
+
+/// How far from its place a ray of the default offset may start, in m: what less than this decides is undecided.
+pub(crate) fn tolerance(scene: &Scene) -> f64 {
+    let (low, high) = scene.bounds();
+    1e-4 + f64::from(4.0 * f32::EPSILON * low.abs().max(high.abs()).max_element())
 }
 
 struct Triangle {
@@ -45,27 +55,65 @@ struct Triangle {
 }
 
 impl Tracer {
-    pub(super) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+    /// All that blocks light in a scene: its surfaces, then its emissive triangles in the table's order.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let emitters = scene.lights().iter().filter(|light| light.kind() == Kind::Triangle);
+        let surfaces = scene.surfaces().iter().map(|surface| surface.corners);
+        Self::over(surfaces.chain(emitters.map(Light::corners)))
+    }
+
+    fn over(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
         Self { triangles: triangles.map(Triangle::new).collect() }
     }
 
+    /// What is between a receiver and the point `uv` of a light, with the tolerance, and whether nothing is without;
+    /// `own` is the light's triangle, if it has one.
+    pub(crate) fn sees(
+        &self,
+        tolerance: f64,
+        at: &Receiver,
+        (light, own): (&Light, Option<usize>),
+        uv: [f32; 2],
+    ) -> (Truth, bool) {
+        let surface = at.surface as usize;
+        let origin = self.on_plane(surface, at.position);
+        let side = at.normal.as_dvec3().dot(self.unit_normal(surface)).signum();
+        let way = if light.kind() == Kind::Directional {
+            Way { origin, direction: light.position.as_dvec3().normalize(), length: f64::INFINITY }
+        } else {
+            let [b1, b2] = if own.is_some() { uniform_point(uv).map(f64::from) } else { [0.0; 2] };
+            let [p, a, b] = [light.position, light.a, light.b].map(Vec3::as_dvec3);
+            let to_light: DVec3 = p + a * b1 + b * b2 - origin;
+            Way { origin, direction: to_light.normalize(), length: to_light.length() }
+        };
+        // What is all but at an end's horizon may come to lie on either side of it.
+        let above = side * self.unit_normal(surface).dot(way.direction * way.length.min(1e6));
+        let before = own.map_or(f64::INFINITY, |own| self.height(own, origin));
+        let own = [Some(surface), own];
+        match self.truth(&way, own, tolerance) {
+            Truth::Lit if above.min(before) >= tolerance => (Truth::Lit, true),
+            Truth::Dark if above.min(before) >= tolerance => (Truth::Dark, false),
+            _ => (Truth::Undecided, above.min(before) > 0.0 && self.truth(&way, own, 0.0) == Truth::Lit),
+        }
+    }
+
     /// The place on the plane of a triangle that a rounded place near it stands for.
-    pub(super) fn on_plane(&self, triangle: usize, place: Vec3) -> DVec3 {
+    fn on_plane(&self, triangle: usize, place: Vec3) -> DVec3 {
         let (place, normal) = (place.as_dvec3(), self.unit_normal(triangle));
         place - normal * self.height(triangle, place)
     }
 
     /// Height of a place over the plane of a triangle, on the side from which its corners run counter-clockwise.
-    pub(super) fn height(&self, triangle: usize, place: DVec3) -> f64 {
+    fn height(&self, triangle: usize, place: DVec3) -> f64 {
         self.unit_normal(triangle).dot(place - self.triangles[triangle].corner)
     }
 
-    pub(super) fn unit_normal(&self, triangle: usize) -> DVec3 {
+    fn unit_normal(&self, triangle: usize) -> DVec3 {
         self.triangles[triangle].normal.normalize()
     }
 
     /// What is on the way but the triangles `own`; with a tolerance of 0 m, as good as never undecided.
-    pub(super) fn truth(&self, way: &Way, own: [Option<usize>; 2], tolerance: f64) -> Truth {
+    fn truth(&self, way: &Way, own: [Option<usize>; 2], tolerance: f64) -> Truth {
         let mut truth = Truth::Lit;
         for (i, triangle) in self.triangles.iter().enumerate() {
             if own.contains(&Some(i)) {
@@ -126,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_ray_is_lit_dark_or_undecided_by_the_tolerance() {
-        let tracer = Tracer::new([[Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 4.0]].into_iter());
+        let tracer = Tracer::over([[Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 4.0]].into_iter());
         let down = |x: f64, y: f64, from: f64, length: f64| {
             let way = Way { origin: DVec3::new(x, y, from), direction: DVec3::NEG_Z, length };
             tracer.truth(&way, [None; 2], 1e-3)
