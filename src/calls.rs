@@ -1,6 +1,7 @@
 //! The main jobs as one call each, with their usual options.
 //!
-//! The rooms have the rest: [`render`](crate::render), [`verify`](crate::verify), [`measure`](crate::measure).
+//! With options of their own, scenes are rendered by [`render`](crate::render) and strategies checked by
+//! [`verify`](crate::verify); comparisons have theirs on the command line.
 
 use crate::base::error::Result;
 use crate::base::random::RunKey;

@@ -23,7 +23,8 @@ pub enum Claim {
     Ceiling,
     /// It chooses by what it cannot know without paying for it (`oracle`): the least error of any choice, never timed.
     Oracle,
-    /// Another renderer's image of the exported scene: it says nothing here, its bias is measured.
+    /// Another renderer's image of the exported scene: it says nothing here, its bias is measured. No strategy of a
+    /// registry claims this.
     External {
         /// Its name and version, as far as they are known.
         renderer: String,

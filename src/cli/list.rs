@@ -54,10 +54,8 @@ struct Item {
 
 fn strategy(configured: &Configured) -> Item {
     let (name, info) = (configured.name(), configured.info());
-    let claim = match info.claim.bias() {
-        None => "unbiased".to_owned(),
-        Some(why) => format!("biased: {why}"),
-    };
+    let word = info.claim.word();
+    let claim = info.claim.bias().map_or_else(|| word.to_owned(), |why| format!("{word}: {why}"));
     let mut text = format!("{name}\n    {}\n    {claim}\n    source: {}\n", info.summary, info.source);
     for p in configured.parameters() {
         text.push_str(&format!("    {}={} ({}): {}\n", p.name, p.default, p.allowed, p.meaning));

@@ -14,9 +14,7 @@ use crate::strategy::Configured;
 
 /// A summary without figures: of a strategy that was skipped or failed, or before its runs.
 pub(crate) fn blank(strategy: &Configured) -> Summary {
-    let claim = strategy.info().claim;
-    let chooses = claim.chooses();
-    Summary::blank(strategy.name().to_owned(), claim, chooses)
+    Summary::blank(strategy.name().to_owned(), strategy.info().claim)
 }
 
 /// The summary of a strategy from its pilot, or why there is none, and its runs; without a pilot, of one that is not run

@@ -312,7 +312,7 @@ impl<'a> Session<'a> {
     }
 
     fn blank(&self) -> Summary {
-        Summary::blank(self.peer.name.clone(), Claim::External { renderer: self.renderer.clone() }, true)
+        Summary::blank(self.peer.name.clone(), Claim::External { renderer: self.renderer.clone() })
     }
 
     fn summary(&self) -> Summary {

@@ -16,7 +16,7 @@ pub struct Program {
 
 impl Program {
     /// Whether it is not this crate's own, whose version and revision stand in every record anyway.
-    pub fn is_foreign(&self) -> bool {
+    pub(crate) fn is_foreign(&self) -> bool {
         self.name != env!("CARGO_PKG_NAME")
     }
 }

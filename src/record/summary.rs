@@ -133,11 +133,11 @@ pub struct Summary {
 
 impl Summary {
     /// A summary without figures: of what was skipped or failed, or before its runs.
-    pub fn blank(strategy: String, claim: Claim, chooses: bool) -> Self {
+    pub(crate) fn blank(strategy: String, claim: Claim) -> Self {
         Self {
             strategy,
+            chooses: claim.chooses(),
             claim,
-            chooses,
             runs: 0,
             curve: Vec::new(),
             passes: 0,

@@ -28,6 +28,22 @@ impl Posed {
 /// A way to draw one.
 pub(crate) type Draw = fn(&mut Stream) -> Posed;
 
+/// All of them by name.
+#[cfg(test)]
+pub(crate) const FAMILIES: [(&str, Draw); 11] = [
+    ("ordinary", ordinary),
+    ("distant", distant),
+    ("sliver", sliver),
+    ("vertex", vertex),
+    ("edge", edge),
+    ("micro", micro),
+    ("huge", huge),
+    ("touching", touching),
+    ("grazing", grazing),
+    ("degenerate", degenerate),
+    ("repeated", repeated),
+];
+
 /// A number by its order of magnitude: 10 to a uniform power.
 pub(super) fn magnitude(stream: &mut Stream, low: f64, high: f64) -> f64 {
     10f64.powf(low + (high - low) * stream.uniform64())

@@ -80,7 +80,7 @@ pub trait Block: Send + Sync {
     fn worker(&self, counting: bool) -> Box<dyn Worker + '_>;
 }
 
-/// What samples a sampler on one thread.
+/// What samples a sampler on one thread. Nobody needs to write one: implement [`LightSampler`] or [`FrameSampler`].
 ///
 /// ```
 /// use citylights::base::random::RunKey;

@@ -71,7 +71,7 @@ impl Configured {
         self.strategy.scale_free()
     }
 
-    /// As [`Strategy::gives_candidates`](super::Strategy::gives_candidates)(super::Strategy::gives_candidates).
+    /// As [`Strategy::gives_candidates`](super::Strategy::gives_candidates).
     pub(super) fn gives_candidates(&self) -> bool {
         self.strategy.gives_candidates()
     }

@@ -16,7 +16,7 @@ use std::collections::BinaryHeap;
 
 /// A cut; its storage is reused from receiver to receiver.
 #[derive(Default)]
-pub struct Cut {
+pub(crate) struct Cut {
     parts: BinaryHeap<Part>,
 }
 

@@ -31,8 +31,7 @@ mod partition;
 mod split;
 mod walk;
 
-pub use cut::Cut;
-pub(crate) use cut::{Below, Cluster, Part};
+pub(crate) use cut::{Below, Cluster, Cut, Part};
 pub use hierarchy::Tree;
 pub use how::{Distance, Facing, How, Weighing};
 pub use memory::Memory;

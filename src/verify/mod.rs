@@ -4,12 +4,12 @@
 //! statistics with fixed seeds, at one level for all hypotheses of a check together (Sidak 1967): every light that adds
 //! something can be chosen, the weights of each light sum to 1 on average, and the mean estimate is the exact sum. Each
 //! finds what the others pass: a light of little power that is never chosen does not move an estimate, a weight that is
-//! 1 % off disappears in the noise of one light. Level 2 changes the [scene](metamorphic) in ways whose effect is
+//! 1 % off disappears in the noise of one light. Level 2 changes the scene (`metamorphic`) in ways whose effect is
 //! known.
 //!
 //! Two more checks look at several runs ([`Verifier::verify`]): another seed gives other picks, and samplers that are
-//! built alike agree whoever arrives first. The [arithmetic](independent) that strategies are held to is checked too, and
-//! so are the [halves](halves()) of a reference and what a strategy is [charged](charged()).
+//! built alike agree whoever arrives first. The arithmetic that strategies are held to is checked too, and
+//! so are the halves of a reference and what a strategy is charged (`independent`, `halves`, `charged`).
 //!
 //! The truth is the sum over *all* lights of the scene with a shadow ray each; what a stage leaves out is never left
 //! out here. A strategy that declares itself biased is held to level 0, and its bias is measured instead.
@@ -23,16 +23,16 @@
 //! |---|---|
 //! | is a strategy right on a stage? | [`Verifier`] |
 //! | how hard is it looked at? | [`VerifyOptions`], `spread` |
-//! | what did one check find, and what are the checks called? | [`Check`], [`names()`] |
-//! | which may a right strategy fail? | [`BY_CHANCE`] |
-//! | what does each light really add? | [`Truth`] |
+//! | what did one check find, and what are the checks called? | [`Check`], `names` |
+//! | which may a right strategy fail? | `BY_CHANCE` |
+//! | what does each light really add? | `Truth` |
 //! | what is checked, and what does it pick? | `subject`, `calls` |
 //! | which picks does no right sampler make? | `impossible` |
 //! | does it keep what holds exactly? | `contract`, `seeds`, `arrival` |
 //! | what does it do in many draws? | `observe`, `pool`, `steady` |
 //! | is that right on average? | `coverage`, `weights`, `estimate` |
-//! | and in a scene that was changed in ways whose effect is known? | [`metamorphic`] |
-//! | is the arithmetic right that all are held to? | [`independent`] |
+//! | and in a scene that was changed in ways whose effect is known? | `metamorphic` |
+//! | is the arithmetic right that all are held to? | `independent` |
 //! | are the halves of a reference independent, and is a strategy charged for all? | `halves`, `charged` |
 
 mod arrival;

@@ -30,7 +30,7 @@ impl Default for VerifyOptions {
 impl VerifyOptions {
     /// A shorter look, where there is much to look at.
     #[must_use]
-    pub fn fewer(self) -> Self {
+    pub(crate) fn fewer(self) -> Self {
         Self { receivers: self.receivers.min(8), draws: self.draws / 4, batches: 50, ..self }
     }
 }

@@ -68,8 +68,8 @@ impl Occluders {
     }
 
     /// The hierarchy and its triangles in its order, for a measurement of the bare library.
-    #[doc(hidden)]
-    pub fn parts(&self) -> (&Bvh2, &[RtTriangle]) {
+    #[cfg(feature = "bench")]
+    pub(crate) fn parts(&self) -> (&Bvh2, &[RtTriangle]) {
         (&self.bvh, &self.triangles)
     }
 

@@ -125,7 +125,6 @@ impl Stage {
     }
 
     /// The same stage with another set of needs: for measuring what leaving out saves.
-    #[doc(hidden)]
     #[cfg(any(test, feature = "bench"))]
     pub(crate) fn with_needs(mut self, needs: Needs) -> Self {
         self.needs = needs;

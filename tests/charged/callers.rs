@@ -1,7 +1,5 @@
 //! Promise: whatever a strategy starts and waits for is charged to it, and by every caller alike.
-#![cfg(feature = "study")]
-
-use super::{quiet, spin};
+use super::{spin, to_itself};
 use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
@@ -170,9 +168,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
-#[ignore = "run by `alone`"]
 fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     let stage = stage(sixteen());
     let (target, truth) = few(&stage, RECEIVERS);
     let strategy = busy("together");
@@ -200,9 +197,8 @@ fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
 }
 
 #[test]
-#[ignore = "run by `alone`"]
 fn work_on_a_thread_of_its_own_is_found() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     let stage = stage(sixteen());
     let context = BuildContext { stage: &stage, seed: build_seed(KEY) };
     for (name, wanted) in [("together", 0.0..0.1), ("own-thread", 0.8..1.0)] {
@@ -256,14 +252,11 @@ fn setups(scene: &str, rounds: usize) -> Option<f64> {
     worst
 }
 
-/// The test below.
-pub(super) const TAKES_A_MINUTE: &str = "every_caller_finds_the_same_set_up";
-
-/// As the project promises: `cargo test --release --lib every_caller_finds -- --ignored --nocapture`.
+/// As the project promises: `CITYLIGHTS_CHARGED_ALONE=1 cargo test --release --lib every_caller_finds -- --ignored --nocapture`.
 #[test]
 #[ignore = "a minute, and only on a machine that does nothing else"]
 fn every_caller_finds_the_same_set_up() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     for scene in ["downtown", "metropolis"] {
         let worst = setups(scene, 9).expect("a set-up that takes long enough");
         assert!(worst <= 1.15, "{scene}: a caller is {worst:.3} off the others");

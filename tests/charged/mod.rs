@@ -5,29 +5,40 @@
 //! | `callers` | every caller that times strategies charges the same |
 //! | `units` | whatever a unit starts is on its clock, or found by the clock of the process |
 //!
-//! The clock of the process must see one test alone: [`alone`] runs them in a process of their own, where each takes one
-//! lock.
-#![cfg(feature = "measure")]
-
+//! The clock of the process must see one test alone: they run one by one in a process of their own.
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 mod callers;
 mod units;
 
+/// Is set where these tests have a process to themselves.
+const ALONE: &str = "CITYLIGHTS_CHARGED_ALONE";
+
 #[test]
-fn alone() {
-    let mut tests = Command::new(std::env::current_exe().expect("this program"));
-    tests.args(["promises::charged", "--ignored", "--skip", callers::TAKES_A_MINUTE]);
-    let output = tests.output().expect("started");
+fn in_a_process_of_their_own_these_tests_pass() {
+    if std::env::var_os(ALONE).is_some() {
+        return;
+    }
+    let output = Command::new(std::env::current_exe().expect("this program"))
+        .args(["promises::charged", "--nocapture"])
+        .env(ALONE, "1")
+        .output()
+        .expect("started");
     let said = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success() && said.contains("5 passed"), "{said}");
+    assert!(output.status.success() && said.matches(BEGUN).count() == 5, "{said}");
 }
 
-/// Until it is dropped, no other test runs.
-pub(crate) fn quiet() -> MutexGuard<'static, ()> {
-    static QUIET: Mutex<()> = Mutex::new(());
-    QUIET.lock().unwrap_or_else(PoisonError::into_inner)
+/// What a test says that has the process to itself.
+const BEGUN: &str = "alone in this process";
+
+/// The right to look at the clock of the process, for one test at a time; none where other tests run beside it.
+pub(crate) fn to_itself() -> Option<MutexGuard<'static, ()>> {
+    static ONE: Mutex<()> = Mutex::new(());
+    std::env::var_os(ALONE)?;
+    let guard = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+    println!("{BEGUN}");
+    Some(guard)
 }
 
 /// Keeps a processor busy.

@@ -1,6 +1,6 @@
 //! Promise: whatever a unit of work starts and waits for is on its clock, and what it leaves to others is found.
 
-use super::{quiet, spin};
+use super::{spin, to_itself};
 use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
@@ -16,9 +16,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const ROUNDS: u64 = 2_000_000;
 
 #[test]
-#[ignore = "run by `alone`"]
 fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     let engine = Engine { clock: &Cpu::new(), workers: 2, seed: 1 };
     let plain = || (0..4).for_each(|_| spin(ROUNDS));
     let scope = || rayon::scope(|scope| (0..4).for_each(|_| scope.spawn(|_| spin(ROUNDS))));
@@ -69,9 +68,8 @@ fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
 }
 
 #[test]
-#[ignore = "run by `alone`"]
 fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     let stray = |work: fn()| {
         let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
         let unit = |(): &(), _: Meter<'_>| {
@@ -130,9 +128,8 @@ impl LightSampler for Arriving {
 }
 
 #[test]
-#[ignore = "run by `alone`"]
 fn a_block_pays_for_arrival_once() {
-    let _quiet = quiet();
+    let Some(_alone) = to_itself() else { return };
     let stage = stage(sixteen());
     let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
     let strategy = Registry::empty().with::<Arriving>().parse("arriving").expect("a strategy");

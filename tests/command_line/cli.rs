@@ -132,6 +132,22 @@ fn pictures_do_not_depend_on_threads_or_leaving_out() {
 }
 
 #[test]
+fn a_replayed_pixel_sees_its_neighbours() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out) = (recipe(folder.path(), LAMP), folder.path().join("frame.exr"));
+    let render = |more: &[&str]| {
+        let mut command = citylights();
+        command.arg("render").arg(&file).args(["-s", "restir", "--spp", "3"]).args(more);
+        String::from_utf8(command.assert().success().get_output().stdout.clone()).expect("text")
+    };
+    render(&["-o", out.to_str().expect("a name")]);
+    let said = render(&["--pixel", "16,14"]);
+    let mean = said.trim().rsplit_once("mean [").and_then(|(_, mean)| mean.strip_suffix(']')).expect("a mean");
+    let mean: Vec<f32> = mean.split(", ").map(|number| number.parse().expect("a number")).collect();
+    assert_eq!(mean, citylights::image::read(&out).expect("a picture").pixels[14 * 32 + 16]);
+}
+
+#[test]
 fn one_pixel_can_be_replayed() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = recipe(folder.path(), LAMP);

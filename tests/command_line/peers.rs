@@ -143,7 +143,7 @@ fn of<'a>(run: &'a Run, name: &str) -> &'a Summary {
 
 fn rows(out: &Path, name: &str) -> Vec<Row> {
     let mut table = csv::Reader::from_path(out.join("runs.csv")).expect("rows");
-    let rows = table.deserialize::<Row>().filter_map(Result::ok);
+    let rows = table.deserialize::<Row>().map(|row| row.expect("a whole row"));
     rows.filter(|row| row.strategy == name).collect()
 }
 

@@ -47,7 +47,7 @@ fn the_table_of_a_file_shows_every_category_and_the_textbook() {
 }
 
 #[test]
-fn the_table_of_cases_shows_each() {
+fn the_table_of_cases_has_every_group() {
     let groups = [
         "solid-angle/sliver",
         "irradiance/vertex",

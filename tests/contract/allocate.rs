@@ -1,6 +1,4 @@
 //! Promise: `allocate` shares out whole points without noise of its own, meets its budget, and ends where there is nothing to share.
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{expected, ground, image, panel, point, sampler, stage};
 use citylights::base::random::RunKey;
 use citylights::scene::Parts;

@@ -1,7 +1,5 @@
 //! What every strategy promises exactly: no allocation, no dependence on threads, nothing lost by leaving out.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{
     bits, cuboid, ground, image, moon, panel, point, sampler, sixteen, spot, stage, stage_with,
 };

@@ -1,8 +1,6 @@
 //! The light tree: no light lost, probabilities exact, degenerate sets of lights, the same tree on any number of
 //! threads.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{
     expected, ground, image, moon, on_sphere, panel, point, receiver, sampler, sixteen, spot, stage, stage_with,
 };

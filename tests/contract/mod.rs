@@ -15,7 +15,6 @@
 //!
 //! Allocations are counted for each thread by itself, so that the test that counts them may run beside others.
 
-#[cfg(feature = "measure")]
 mod runs;
 
 mod allocate;

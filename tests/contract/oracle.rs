@@ -1,7 +1,5 @@
 //! The oracle knows what each light adds, and is therefore the floor.
 
-#![cfg(feature = "measure")]
-
 use super::runs::Runs;
 use crate::promises::alone::Alone;
 use crate::promises::common::{cuboid, expected, ground, point, sixteen, stage};

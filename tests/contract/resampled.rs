@@ -1,7 +1,5 @@
 //! Choosing among another strategy's candidates keeps its promise, whatever they are.
 
-#![cfg(feature = "measure")]
-
 use super::runs::Runs;
 use crate::promises::common::{image, sixteen, stage};
 use citylights::strategy::{Claim, Configured, Registry};

@@ -1,7 +1,5 @@
 //! Reuse of neighbours' candidates: unbiased where it says so, and measurably dark where it does not.
 
-#![cfg(feature = "measure")]
-
 use super::runs::Runs;
 use crate::promises::common::{bits, sampler, sixteen, stage};
 use citylights::base::random::RunKey;

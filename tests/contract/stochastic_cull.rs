@@ -1,7 +1,5 @@
 //! Random ranges: as many lights as the closed form says, and the whole scene on average, however few are shaded.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{ALBEDO, ground, point, receiver, sampler, sixteen, stage, stage_with};
 use citylights::base::colour::luminance;
 use citylights::base::random::RunKey;

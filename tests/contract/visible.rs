@@ -1,8 +1,6 @@
 //! Choosing by what each place sees keeps its promise, whatever was learned; what is learned depends on nothing but the
 //! scene and the seed, and stays within its bounds.
 
-#![cfg(feature = "measure")]
-
 use super::runs::Runs;
 use crate::promises::common::{bits, cuboid, ground, image, moon, panel, point, receiver, sampler, stage, stage_with};
 use citylights::base::draws::Points;
@@ -240,7 +238,6 @@ fn without_memory_or_need_it_is_the_tree() {
     }
 }
 
-#[cfg(feature = "recipe")]
 #[test]
 fn memory_is_bounded_and_what_is_left_out_does_not_depend_on_threads() {
     use citylights::sources::Overrides;

@@ -1,7 +1,5 @@
 //! EXR files of other tools are read by one rule, and no file, however broken, panics or takes memory for what it
 //! merely claims.
-#![cfg(feature = "image")]
-
 use citylights::base::error::{Error, Result};
 use citylights::image::{Picture, exr as ours};
 use exr::image::Layers;

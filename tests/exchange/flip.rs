@@ -1,6 +1,4 @@
 //! FLIP is the authors' FLIP: figures of their own program (flip-evaluator 1.7), on pictures that are made here.
-#![cfg(feature = "image")]
-
 use citylights::base::colour::srgb_decode;
 use citylights::image::flip::{self, Exposures, PIXELS_PER_DEGREE, Pooled};
 use glam::{DVec3, Vec3};

@@ -1,6 +1,4 @@
 //! Pictures keep their numbers, and are never half-written.
-#![cfg(feature = "image")]
-
 use citylights::base::error::Error;
 use citylights::image::{self, Picture, exr, png};
 use std::fs;

@@ -73,7 +73,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Files below src, by their path there, with their text; without main.rs, a program of its own.
-fn sources() -> Vec<(String, String)> {
+pub(crate) fn sources() -> Vec<(String, String)> {
     let all = files(&root()).into_iter().map(|path| {
         let below = path.strip_prefix(root()).expect("below src").display().to_string();
         (below, fs::read_to_string(&path).expect("a source"))

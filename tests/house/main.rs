@@ -1,4 +1,5 @@
-//! Promise: a module of `src` imports from lower floors alone, and no file grows beyond what can be read.
+//! Promise: a module of `src` imports from lower floors alone, no file grows beyond what can be read, and strangers may call no
+//! more than they can learn.
 //!
 //! | file | what it shows |
 //! |---|---|

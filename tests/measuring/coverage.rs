@@ -4,7 +4,8 @@
 //! summarises these as `compare` does. The truth is the same figure of all 1,600. A figure without an upper end holds
 //! whatever is not below its lower end; how often that was so is printed too. CPU seconds are made up, with 3 % of noise
 //! for each run, so that other work on the machine has no part in it. `COVERAGE_SCENE`, `COVERAGE_SEED` and
-//! `COVERAGE_RUNS` say otherwise.
+//! `COVERAGE_RUNS` say otherwise:
+//! `cargo test --release --lib coverage -- --ignored --nocapture`.
 
 use citylights::base::error::Result;
 use citylights::base::random::Stream;

@@ -1,6 +1,4 @@
 //! One engine times everything, and plans do not follow the machine.
-#![cfg(feature = "measure")]
-
 use crate::promises::alone::Alone;
 use crate::promises::common::{sixteen, stage};
 use citylights::measure::clock::{Clock, Cpu};

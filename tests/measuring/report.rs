@@ -1,6 +1,4 @@
 //! Tables, pages and plots follow from the raw rows alone, and drift is noticed.
-#![cfg(feature = "plots")]
-
 use crate::promises::common::{IN_PROPORTION, times_as_long};
 use citylights::base::claim::Claim;
 use citylights::record::store::{self, RowWriter};
@@ -147,7 +145,7 @@ impl Maker {
             unstable: self.strategy == "uniform",
             skipped: None,
             error: None,
-            ..Summary::blank(self.strategy.to_owned(), self.claim.clone(), self.chooses())
+            ..Summary::blank(self.strategy.to_owned(), self.claim.clone())
         }
     }
 
@@ -178,7 +176,7 @@ fn makers() -> Vec<Maker> {
 
 fn skipped(strategy: &str) -> Summary {
     let skipped = Some("skipped: one pass is 40.00 s of counted work".to_owned());
-    Summary { skipped, ..Summary::blank(strategy.to_owned(), Claim::Unbiased, true) }
+    Summary { skipped, ..Summary::blank(strategy.to_owned(), Claim::Unbiased) }
 }
 
 /// Not timed, on a few receivers.
@@ -197,7 +195,7 @@ fn oracle() -> Summary {
             choosing_rays: 12_345,
             ..Counts::default()
         },
-        ..Summary::blank("oracle".to_owned(), Claim::Oracle, false)
+        ..Summary::blank("oracle".to_owned(), Claim::Oracle)
     }
 }
 

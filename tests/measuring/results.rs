@@ -1,6 +1,4 @@
 //! Raw results keep every number, and a run that dies keeps its rows.
-#![cfg(feature = "measure")]
-
 use citylights::base::claim::Claim;
 use citylights::record::folder::MARK;
 use citylights::record::store::{self, RowWriter};
@@ -114,7 +112,6 @@ fn record() -> RunRecord {
                 ..Summary::blank(
                     "range:cutoff=0.5".to_owned(),
                     Claim::Biased { why: "drops lights below half a display step".into() },
-                    true,
                 )
             }],
         }],

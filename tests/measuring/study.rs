@@ -1,6 +1,4 @@
 //! Promise: a study records typed tables that its page and plots follow from alone, and what it says holds.
-#![cfg(feature = "study")]
-
 use crate::promises::common::{ground, point, receiver, sampler, spot, stage_with};
 use citylights::base::colour::luminance;
 use citylights::base::error::{Error, Result};

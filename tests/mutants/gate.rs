@@ -1,7 +1,5 @@
 //! A check that cannot fail proves nothing: wrong strategies, each rejected by the check that is meant for it.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{sixteen, stage};
 use citylights::base::colour::luminance;
 use citylights::base::discrete::Cumulative;
@@ -193,7 +191,6 @@ fn a_dropped_light_that_is_claimed_fails_weights_and_estimate() {
     rejected(CLAIMED, &["weights", "estimate", "picks"], &["coverage", "reciprocal"]);
 }
 
-#[cfg(feature = "recipe")]
 #[test]
 fn wrong_weights_and_dropped_lights_are_found_in_a_city_too() {
     use citylights::sources::Overrides;

@@ -1,8 +1,6 @@
 //! Wrong strategies of the harder kind: misuse of even numbers, of a frame, of reservoirs, of trees, of mixtures, of
 //! units; each is rejected by the check that is meant for it, and by the gate before a comparison.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{cuboid, ground, panel, point, sixteen, stage};
 use citylights::base::colour::luminance;
 use citylights::base::draws::Draws;
@@ -361,7 +359,6 @@ fn a_right_strategy_passes_every_change_of_the_scene() {
     rejected("right", &checks, &[], &["scaled-counts", "turned", "moved", "permuted", "split", "black", "hidden"]);
 }
 
-#[cfg(feature = "cli")]
 #[test]
 fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     use citylights::measure::compare::{Compared, ComparisonOptions, compare};

@@ -1,7 +1,5 @@
 //! Strategies that are right in one run and wrong over several: each is rejected by the check that is meant for it.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{sixteen, stage};
 use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;

@@ -1,8 +1,6 @@
 //! What may go wrong with chances that are learned: tables changed under a running sequence, weights by another table than the
 //! picks, lights given up because no probe saw them. Each is rejected by the check that is meant for it.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{cuboid, ground, panel, point, sixteen, stage};
 use citylights::base::discrete::Cumulative;
 use citylights::base::draws::Draws;

@@ -1,7 +1,5 @@
 //! Promise: `stability` shows where arithmetic breaks and that ours does not; a file that cannot be used is said to be so.
 
-#![cfg(feature = "cli")]
-
 use citylights::stability::CASES;
 use citylights::stability::vectors::{CATEGORIES, judge, parse};
 

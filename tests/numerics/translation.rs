@@ -1,6 +1,4 @@
 //! Promise: where a scene stands and how large it is changes nothing but what rounding its numbers changes.
-#![cfg(feature = "study")]
-
 use crate::promises::common::{bits, digest, image, stage_with};
 use citylights::base::statistics::Moments;
 use citylights::render::exact::exact;

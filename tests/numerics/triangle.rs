@@ -1,33 +1,16 @@
 //! Promise: what a receiver sees of a triangle is right to the last digits that matter, and points on it follow their
 //! density.
 
-#![cfg(feature = "measure")]
-
 use citylights::base::random::Stream;
 use citylights::base::statistics::sidak;
 use citylights::base::triangle::{Projected, Seen, SolidAngle};
 use citylights::stability::precise;
-use citylights::stability::triangles::{self, Draw, Posed};
+use citylights::stability::triangles::{FAMILIES, Posed};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::PI;
-
-/// All ways to draw a triangle that `stability` knows, by name.
-const FAMILIES: [(&str, Draw); 11] = [
-    ("ordinary", triangles::ordinary),
-    ("distant", triangles::distant),
-    ("sliver", triangles::sliver),
-    ("vertex", triangles::vertex),
-    ("edge", triangles::edge),
-    ("micro", triangles::micro),
-    ("huge", triangles::huge),
-    ("touching", triangles::touching),
-    ("grazing", triangles::grazing),
-    ("degenerate", triangles::degenerate),
-    ("repeated", triangles::repeated),
-];
 
 /// A triangle of one of the families.
 fn family(name: &str, seed: u64) -> Posed {

@@ -335,7 +335,6 @@ fn rays_that_graze_the_side_of_a_block_agree_with_its_shape() {
     }
 }
 
-#[cfg(feature = "measure")]
 #[test]
 fn ten_times_as_many_coincident_triangles_and_lights_build_in_about_ten_times_the_time() {
     use crate::promises::common::{IN_PROPORTION, expected, times_as_long};

@@ -267,7 +267,6 @@ fn surfaces_of_a_building_look_outwards() {
     assert_eq!(walls, 10 * grown.solids.len());
 }
 
-#[cfg(feature = "measure")]
 #[test]
 fn a_million_lights_grow_in_about_ten_times_the_time_of_a_hundred_thousand() {
     use crate::common::{IN_PROPORTION, times_as_long};

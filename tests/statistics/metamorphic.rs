@@ -1,7 +1,5 @@
 //! What must not change when the scene changes in a way that changes nothing, and what must change by a known factor.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{bits, digest, expected, image, point, sixteen, stage_with};
 use citylights::scene::light::Shape;
 use citylights::scene::light_sampling::LightSampling;
@@ -60,7 +58,6 @@ fn no_change_that_changes_nothing_changes_a_small_scene() {
     }
 }
 
-#[cfg(feature = "recipe")]
 #[test]
 fn no_change_that_changes_nothing_changes_a_city() {
     use citylights::sources::Overrides;

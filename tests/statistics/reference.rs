@@ -1,6 +1,4 @@
 //! Promise: a reference is exact and says how exact, keeps to its bound of work, and loses nothing when it is interrupted.
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{ground, panel, point, sixteen, stage};
 use citylights::base::error::Error;
 use citylights::base::rel_mse::RelMse;

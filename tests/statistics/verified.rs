@@ -1,7 +1,5 @@
 //! Every registered strategy against its contract, on scenes small and real.
 
-#![cfg(feature = "measure")]
-
 use crate::promises::common::{ground, panel, point, sixteen, stage, stage_with};
 use citylights::sources::small;
 use citylights::strategy::Registry;
@@ -76,7 +74,6 @@ fn the_truth_per_light_adds_up_to_the_exact_image() {
     }
 }
 
-#[cfg(feature = "recipe")]
 fn shipped(name: &str, seed: u64, draws: usize, level: f64) {
     use citylights::sources::Overrides;
     use citylights::sources::recipe::load;
@@ -90,13 +87,11 @@ fn shipped(name: &str, seed: u64, draws: usize, level: f64) {
     );
 }
 
-#[cfg(feature = "recipe")]
 #[test]
 fn every_strategy_keeps_its_contract_on_first_night() {
     shipped("first-night", 1, 10_000, VerifyOptions::default().level);
 }
 
-#[cfg(feature = "recipe")]
 #[test]
 #[ignore = "takes five minutes; for a change to strategies or to leaving out"]
 fn every_strategy_keeps_its_contract_on_the_scenes_of_one_street() {
