@@ -148,10 +148,6 @@ impl Maker {
             ..Summary::blank(self.strategy.to_owned(), self.claim.clone())
         }
     }
-
-    fn chooses(&self) -> bool {
-        !matches!(self.claim, Claim::Floor | Claim::Ceiling)
-    }
 }
 
 /// With an interval that reaches a share of it down, and farther up.
