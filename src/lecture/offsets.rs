@@ -22,7 +22,7 @@ use rayon::prelude::*;
 const FAR: f64 = 10_000.0;
 
 /// Most tests of a ray against a triangle that the truth may take: some ten seconds.
-const MOST_TESTS: usize = 4_000_000_000;
+const MOST_TESTS: f64 = 4e9;
 
 /// What a policy makes of a picture.
 #[derive(Debug, Default)]
@@ -75,11 +75,11 @@ pub(super) fn draw(asked: &Asked<'_>) -> Result<Plate> {
     let scene = &asked.scene;
     let (width, height) = scene.camera().resolution();
     let triangles = scene.surfaces().len() + scene.lights().len();
-    let tests = 4 * width as usize * height as usize * scene.lights().len() * triangles;
+    let tests = 4.0 * f64::from(width) * f64::from(height) * scene.lights().len() as f64 * triangles as f64;
     if tests > MOST_TESTS {
         return Err(Error::Invalid(format!(
-            "{}: this chapter tries every triangle for each shadow ray to know the truth, {tests} tests here and at most \
-             {MOST_TESTS}; give a smaller scene or fewer pixels",
+            "{}: this chapter tries every triangle for each shadow ray to know the truth, {tests:.1e} tests here and at most \
+             {MOST_TESTS:.0e}; give a smaller scene or fewer pixels",
             scene.name()
         )));
     }
