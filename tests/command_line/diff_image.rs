@@ -187,7 +187,7 @@ fn maps_are_colours_in_a_png_and_values_in_an_exr() {
             }
         }
     }
-    assert!(told.contains("rel-mse") && told.contains("mse") && told.len() >= 3, "published colours in {told:?} alone");
+    assert!(told.contains("rel-mse") && told.contains("mse"), "published colours in {told:?} alone");
     // What the map shows without being told: HDR-FLIP, or FLIP where an exposure is given.
     let map = folder.path("default.exr");
     for (options, same) in [(&[][..], "hdr-flip.exr"), (&["--exposure", "1"][..], "flip.exr")] {

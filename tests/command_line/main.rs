@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `cli` | every verb: its mistakes, its exit codes, its bytes |
 //! | `killed` | a run that is killed at any moment goes on to the same rows |
+//! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
 //! | `export` | exports are written whole or not at all |
 //! | `diff_image` | two pictures are compared by the figures that papers print |
@@ -13,5 +14,6 @@ mod cli;
 mod diff_image;
 mod export;
 mod killed;
+mod lecture;
 mod peers;
 mod stability;
