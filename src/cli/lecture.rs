@@ -21,7 +21,7 @@ pub(super) struct Arguments {
     /// Another scene than the chapter's own: a recipe (.toml) or glTF (.glb, .gltf)
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// The picture, .svg; lecture/<number>-<chapter>.svg by default
+    /// The picture, .svg; lecture/NUMBER-CHAPTER.svg by default
     #[arg(long, short, visible_alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Pixels across and down of the pictures in it
