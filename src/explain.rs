@@ -150,7 +150,7 @@ fn fate(stage: &Stage, at: &Receiver, pick: &Pick) -> Explained {
             return Explained { light, weight, point: None, adds: 0.0, expected: None, fate: Fate::Ends(end) };
         }
     };
-    let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+    let segment = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
     let fate = if stage.occluders().visible(&segment) {
         Fate::Adds
     } else {

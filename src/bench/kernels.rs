@@ -43,6 +43,7 @@ use crate::visibility::stage::Stage;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
 use glam::DVec3;
 use obvhs::ray::Ray;
+use obvhs::rt_triangle::RtTriangle;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
@@ -101,10 +102,11 @@ fn questions(stage: &Stage) -> Vec<Question> {
 }
 
 fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[Question]) {
-    let (bvh, triangles) = stage.occluders().parts();
+    let (bvh, corners) = stage.occluders().parts();
+    let triangles: Vec<RtTriangle> = corners.into_iter().map(|[a, b, c]| RtTriangle::new(a, b, c)).collect();
     let segment = |question: &Question| {
         let Question { from, light, to } = question;
-        stage.offset().segment(from, light, to.direction, to.distance)
+        stage.ray_ends().segment(from, light, to.direction, to.distance)
     };
     let through_ours = || questions.iter().filter(|question| stage.occluders().visible(&segment(question))).count();
     let rays: Vec<Ray> = questions

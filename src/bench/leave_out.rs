@@ -105,7 +105,7 @@ fn by_hand<const KINDS: u8, const BLOCKED: bool>(
                         continue;
                     };
                     if BLOCKED {
-                        let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+                        let segment = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
                         if !stage.occluders().visible(&segment) {
                             continue;
                         }

@@ -133,6 +133,8 @@ struct Session {
     films: ImageStore,
     /// Rows of an interrupted comparison that is being resumed.
     before: Vec<Row>,
+    /// Scenes on which nothing could be measured, and why.
+    nothing: Vec<String>,
 }
 
 impl Session {
@@ -159,7 +161,7 @@ impl Session {
             None => write_run(folder.path(), &record)?,
         }
         let (rows, before) = RowWriter::resume(folder.path())?;
-        Ok(Some(Self { folder, record, rows, films, before }))
+        Ok(Some(Self { folder, record, rows, films, before, nothing: Vec::new() }))
     }
 
     fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
@@ -189,7 +191,9 @@ impl Session {
             }
         };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
-        let Compared { mut scene, mut rows, truth, target } = compared.inspect_err(resumable)?;
+        let Compared { mut scene, mut rows, truth, target, nothing } = compared.inspect_err(resumable)?;
+        let peers = if nothing.is_some() { &[] } else { peers };
+        self.nothing.extend(nothing.map(|why| format!("{}: {why}", scene.name)));
         let options = peers::measure::PeerOptions {
             peers,
             python: &python(arguments.peer_python.as_deref()),
@@ -221,9 +225,11 @@ impl Session {
         Ok(())
     }
 
-    /// Says which strategies failed, a line each: a table that holds one has failed.
+    /// Says which strategies failed, a line each, and which scenes had nothing to measure: a table that holds one has
+    /// failed.
     fn outcome(&self) -> Outcome {
-        let mut outcome = Outcome::Done;
+        let mut outcome = if self.nothing.is_empty() { Outcome::Done } else { Outcome::CheckFailed };
+        self.nothing.iter().for_each(|why| say(why));
         for scene in &self.record.scenes {
             for summary in scene.summaries.iter().filter(|s| !s.claim.is_external()) {
                 if let Some(error) = &summary.error {

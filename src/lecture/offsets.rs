@@ -46,7 +46,7 @@ fn look(stage: &Stage, tracer: &Tracer, tolerance: f64, at: &Receiver) -> (DVec3
         let own = (light.kind() == Kind::Triangle).then_some(emitter);
         emitter += usize::from(own.is_some());
         let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, CENTROID, at) else { continue };
-        let ray = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+        let ray = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
         let seen = stage.occluders().visible(&ray);
         if seen {
             radiance += arrival.radiance.as_dvec3();

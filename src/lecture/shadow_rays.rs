@@ -61,7 +61,7 @@ fn look(stage: &Stage, at: &Receiver) -> Found {
             }
         };
         let radiance = arrival.radiance.as_dvec3();
-        let ray = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+        let ray = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
         let endless = Segment::bare(ray.origin, ray.along, ray.t_min, f32::INFINITY);
         let (seen, free) = (stage.occluders().visible(&ray), stage.occluders().visible(&endless));
         found.rays += 1;

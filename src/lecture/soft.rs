@@ -40,7 +40,7 @@ pub(super) fn soft(stage: &Stage, at: &Receiver, side: u32, seed: u64) -> Soft {
             let uv = [step(cell % side, u), step(cell / side, v)];
             let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, uv, at) else { continue };
             soft.facing += 1;
-            if stage.occluders().visible(&stage.offset().segment(at, light, arrival.direction, arrival.distance)) {
+            if stage.occluders().visible(&stage.ray_ends().segment(at, light, arrival.direction, arrival.distance)) {
                 soft.seen += 1;
                 soft.radiance += arrival.radiance.as_dvec3();
             }

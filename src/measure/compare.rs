@@ -19,6 +19,7 @@ use crate::record::store::RowWriter;
 use crate::record::{Interval, ReferenceRecord, Row, SceneRecord, SharedWork, Summary};
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
+use glam::Vec3;
 
 pub(crate) use super::options::ComparisonOptions;
 
@@ -32,6 +33,8 @@ pub(crate) struct Compared<'a> {
     pub target: Target<'a>,
     /// What they were taken against.
     pub truth: Truth,
+    /// Why there was nothing to measure, if so: every summary is then of a strategy that was skipped.
+    pub nothing: Option<String>,
 }
 
 /// Compares strategies on a scene. Rows go to `rows` as they come; `before` holds those of finished runs, which are not
@@ -57,6 +60,9 @@ pub(crate) fn compare<'a>(
     let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
     let wanted = Wanted { work_s: options.reference_work_s, ..Wanted::new(accuracy(options, &pilots, &ladders)) };
     let (target, reference) = Reference::bounded(&frame, wanted, options.cache, watch)?;
+    if let Some(why) = nothing_lit(&target, &reference.truth) {
+        return Ok(unmeasured(target, file, reference, wanted, options, why));
+    }
 
     let strategies: Vec<&Configured> = options.strategies.iter().collect();
     let experiment = Experiment {
@@ -88,7 +94,38 @@ pub(crate) fn compare<'a>(
     let notes = notes(&target, &reference, wanted, account.stray_share());
     let scene = record(&target, file, &reference, &headline, notes, summaries);
     let rows = runs.into_iter().flat_map(|runs| runs.rows).collect();
-    Ok(Compared { scene, rows, target, truth: reference.truth })
+    Ok(Compared { scene, rows, target, truth: reference.truth, nothing: None })
+}
+
+/// Why no error can be measured: the camera sees no surface, or no light reaches one that it sees.
+fn nothing_lit(target: &Target<'_>, truth: &Truth) -> Option<String> {
+    let (points, lights) = (target.places.len(), target.stage.scene().lights().len());
+    let is_black = truth.mean().iter().all(|&radiance| radiance == Vec3::ZERO);
+    let why = match (points, lights) {
+        (0, _) => "the camera sees no surface".to_owned(),
+        _ if !is_black => return None,
+        (_, 0) => "the scene has no lights".to_owned(),
+        _ => format!("none of {lights} lights reaches any of the {points} visible points that were looked at"),
+    };
+    Some(format!("nothing can be measured: {why}; every strategy that adds nothing is right here"))
+}
+
+/// A scene on which nothing was measured.
+fn unmeasured<'a>(
+    target: Target<'a>,
+    file: &str,
+    reference: Reference,
+    wanted: Wanted,
+    options: &ComparisonOptions<'_>,
+    why: String,
+) -> Compared<'a> {
+    let skipped = |strategy| Summary { skipped: Some(why.clone()), ..summary::blank(strategy) };
+    let summaries = options.strategies.iter().map(skipped).collect();
+    let headline = Headline { times_s: Vec::new(), ranked_by: 0 };
+    let mut notes = notes(&target, &reference, wanted, 0.0);
+    notes.push(why.clone());
+    let scene = record(&target, file, &reference, &headline, notes, summaries);
+    Compared { scene, rows: Vec::new(), target, truth: reference.truth, nothing: Some(why) }
 }
 
 /// A pilot, or why there is none; nothing of what is not run against the clock.

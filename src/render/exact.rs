@@ -114,6 +114,6 @@ pub(crate) fn shadowed(
 ) -> DVec3 {
     let Ok(arrival) = contribution::<0b1111>(by, light, uv, at) else { return DVec3::ZERO };
     *rays += 1;
-    let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+    let segment = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
     if stage.occluders().visible(&segment) { arrival.radiance.as_dvec3() } else { DVec3::ZERO }
 }

@@ -86,7 +86,7 @@ fn shade_pick<const KINDS: u8, const OCCLUSION: bool, const COUNTING: bool>(
         }
     };
     if OCCLUSION {
-        let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+        let segment = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
         let visible = stage.occluders().visible(&segment);
         if COUNTING {
             counts.shadow_rays += 1;

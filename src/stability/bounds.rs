@@ -120,8 +120,10 @@ pub(super) fn stretched() -> Finding {
     Finding { ours, textbook: Some(theirs), limit: 0.0 }
 }
 
-/// How far a shadow ray's start leaves what is allowed: above the surface, and within 0.1 mm and four units of it.
+/// How far a shadow ray's start leaves what is allowed: above the surface, and within 0.1 mm and four units of it in a city
+/// of 800 m.
 pub(super) fn push() -> Finding {
+    const SIZE: f32 = 800.0;
     let mut stream = Stream::keyed(&[SEED, 4]);
     let (mut ours, mut theirs) = (Tally::default(), Tally::default());
     let light = Light::from(Shape::Point { position: Vec3::ZERO, intensity: Vec3::ONE });
@@ -134,7 +136,7 @@ pub(super) fn push() -> Finding {
         let at = Receiver { position, normal, view: normal, albedo: Vec3::ONE, pixel: 0, surface: 0 };
         let unit = place.abs().max_element() * f64::from(f32::EPSILON);
         for (policy, tally) in [(Offset::SCALED, &mut ours), (Offset::ORIGIN_PUSH, &mut theirs)] {
-            let pushed = policy.segment(&at, &light, Vec3::Z, 1.0).origin.as_dvec3() - place;
+            let pushed = policy.within(SIZE).segment(&at, &light, Vec3::Z, 1.0).origin.as_dvec3() - place;
             let height = pushed.dot(normal.as_dvec3());
             let beyond = (pushed.length() - 1e-4 - 4.0 * unit).max(0.0);
             tally.add_positive(height, if height > 0.0 { beyond } else { f64::INFINITY });

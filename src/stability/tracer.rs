@@ -39,10 +39,10 @@ pub(crate) struct Tracer {
     triangles: Vec<Triangle>,
 }
 
-/// How far from its place a ray of the default offset may start, in m: what less than this decides is undecided.
+/// How far from its place a ray of any right policy may start, in m: what less than this decides is undecided.
 pub(crate) fn tolerance(scene: &Scene) -> f64 {
     let (low, high) = scene.bounds();
-    1e-4 + f64::from(4.0 * f32::EPSILON * low.abs().max(high.abs()).max_element())
+    1e-4 + f64::from(5.0 * f32::EPSILON * low.abs().max(high.abs()).max_element())
 }
 
 struct Triangle {

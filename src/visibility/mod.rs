@@ -7,4 +7,5 @@ pub mod offset;
 pub(crate) mod reach;
 pub(crate) mod russian_roulette;
 pub mod stage;
+mod triangle;
 pub mod view;

@@ -4,13 +4,12 @@
 
 use super::bvh::{self, Asked};
 use super::offset::{self, Segment};
+use super::triangle::{Triangle, View};
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
 use obvhs::ray::{Ray, RayHit};
-use obvhs::rt_triangle::RtTriangle;
-use obvhs::triangle::Triangle;
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +24,7 @@ pub enum Met {
 pub struct Occluders {
     bvh: Bvh2,
     /// In the hierarchy's order.
-    triangles: Vec<RtTriangle>,
+    triangles: Vec<Triangle>,
     /// What each of `triangles` is.
     met: Vec<Met>,
     /// How far, in metres, a height over a plane may be off by rounding, whichever the plane and the triangle.
@@ -42,7 +41,7 @@ impl Occluders {
             .unzip();
         let bvh = bvh::build(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))), Asked::Rays);
         let order = || bvh.primitive_indices.iter().map(|&i| i as usize);
-        let triangles = order().map(|i| RtTriangle::from(&triangle(corners[i]))).collect();
+        let triangles = order().map(|i| Triangle::new(corners[i])).collect();
         let met = order().map(|i| met[i]).collect();
         let all = bvh::around(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))));
         let rounding = if corners.is_empty() { 0.0 } else { offset::rounding(all.diagonal().into()) };
@@ -69,8 +68,8 @@ impl Occluders {
 
     /// The hierarchy and its triangles in its order, for a measurement of the bare library.
     #[cfg(feature = "bench")]
-    pub(crate) fn parts(&self) -> (&Bvh2, &[RtTriangle]) {
-        (&self.bvh, &self.triangles)
+    pub(crate) fn parts(&self) -> (&Bvh2, Vec<[Vec3A; 3]>) {
+        (&self.bvh, self.triangles.iter().map(Triangle::corners).collect())
     }
 
     /// Whether nothing lies on the segment, but what it passes over.
@@ -86,8 +85,10 @@ impl Occluders {
     #[inline(never)]
     fn visible_beyond(&self, segment: &Segment) -> bool {
         let &Segment { origin, along, t_min, t_max, .. } = segment;
-        self.bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| {
-            let t = self.triangles[i].intersect(ray);
+        let ray = ray(origin, along, t_min, t_max);
+        let view = View::new(&ray);
+        self.bvh.ray_traverse_miss(ray, |ray, i| {
+            let t = self.triangles[i].meet(ray, &view);
             let passed = t < ray.tmax && segment.passes_over(&self.triangles[i], t, self.rounding);
             if passed { f32::INFINITY } else { t }
         })
@@ -98,14 +99,12 @@ impl Occluders {
         let ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
         // A fresh record: a used one would turn a miss of the root into a hit.
         let mut hit = RayHit::none();
-        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| self.triangles[i].intersect(ray)) {
+        let view = View::new(&ray);
+        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| self.triangles[i].meet(ray, &view)) {
             return None;
         }
         let index = hit.primitive_id as usize;
-        let triangle = &self.triangles[index];
-        let v0 = Vec3::from(triangle.v0).as_dvec3();
-        let normal = Vec3::from(triangle.ng).as_dvec3();
-        let t = normal.dot(v0 - origin.as_dvec3()) / normal.dot(direction);
+        let t = self.triangles[index].depth(origin.as_dvec3(), direction);
         Some((self.met[index], if t.is_finite() { t } else { f64::from(hit.t) }))
     }
 }
@@ -125,17 +124,15 @@ impl pulp::NullaryFnOnce for Way<'_> {
         let &Segment { origin, along, t_min, t_max, .. } = self.segment;
         let Occluders { bvh, triangles, .. } = self.occluders;
         let mut last = (0, f32::INFINITY);
-        let free = bvh.ray_traverse_miss(ray(origin, along, t_min, t_max), |ray, i| {
-            let t = triangles[i].intersect(ray);
+        let ray = ray(origin, along, t_min, t_max);
+        let view = View::new(&ray);
+        let free = bvh.ray_traverse_miss(ray, |ray, i| {
+            let t = triangles[i].meet(ray, &view);
             last = (i, t);
             t
         });
         (free, last)
     }
-}
-
-fn triangle([v0, v1, v2]: [Vec3; 3]) -> Triangle {
-    Triangle { v0: v0.into(), v1: v1.into(), v2: v2.into() }
 }
 
 /// The one place where rays are made.

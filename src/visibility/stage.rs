@@ -1,7 +1,7 @@
 //! A scene made ready to be measured: occluders built, receivers found, what it does not need left out.
 
 use super::occluders::Occluders;
-use super::offset::Offset;
+use super::offset::{Offset, RayEnds};
 use super::reach;
 use super::view::View;
 use crate::scene::Scene;
@@ -20,6 +20,7 @@ pub struct Stage {
     needs: Needs,
     lights: Vec<LightId>,
     offset: Offset,
+    ray_ends: RayEnds,
     light_sampling: LightSampling,
     shared: Vec<Shared>,
 }
@@ -62,6 +63,7 @@ impl Stage {
             LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
         };
         Self {
+            ray_ends: offset.in_scene(&scene),
             scene: Arc::new(scene),
             occluders: Arc::new(occluders),
             view,
@@ -111,6 +113,12 @@ impl Stage {
     /// How shadow rays keep off their own surfaces.
     pub fn offset(&self) -> Offset {
         self.offset
+    }
+
+    /// Where shadow rays start and end here.
+    #[inline]
+    pub fn ray_ends(&self) -> RayEnds {
+        self.ray_ends
     }
 
     /// How the point on a triangle light is drawn.

@@ -16,7 +16,7 @@ use citylights::strategy::{
 };
 use citylights::verify::metamorphic::{Copies, Metamorphic};
 use citylights::verify::{Check, Verifier, VerifyOptions};
-use citylights::visibility::offset::Offset;
+use citylights::visibility::offset::{Offset, RayEnds};
 use citylights::visibility::stage::Stage;
 use glam::Vec3;
 use std::collections::HashMap;
@@ -166,7 +166,7 @@ struct Reuse {
     /// Rays tell what a receiver sees.
     scene: Arc<Scene>,
     occluded: Arc<citylights::visibility::occluders::Occluders>,
-    offset: Offset,
+    ends: RayEnds,
 }
 
 struct Pass<'a> {
@@ -186,7 +186,7 @@ impl Strategy for Neighbours {
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
         let stage = context.stage;
         let (scene, occluded) = (Arc::clone(stage.scene()), Arc::clone(stage.occluders()));
-        Ok(PerPass(Reuse { scene, occluded, offset: stage.offset() }))
+        Ok(PerPass(Reuse { scene, occluded, ends: stage.ray_ends() }))
     }
 }
 
@@ -195,7 +195,7 @@ impl Reuse {
         let light = &self.scene.lights()[light as usize];
         let Shape::Point { position: place, .. } = light.shape() else { return true };
         let to = place - at.position;
-        self.occluded.visible(&self.offset.segment(at, light, to.normalize(), to.length()))
+        self.occluded.visible(&self.ends.segment(at, light, to.normalize(), to.length()))
     }
 }
 

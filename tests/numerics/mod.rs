@@ -6,6 +6,7 @@
 //! | `light_sampling` | every way to draw a point on a light gives the same light, and none shows a seam |
 //! | `shading` | what a point adds is nothing or a sound number |
 //! | `visibility` | shadow rays against a slow tracer in f64, and the traps of offsets and slabs |
+//! | `watertight` | no ray passes between triangles that share an edge or a corner |
 //! | `translation` | where a scene stands and how large it is changes nothing |
 //! | `extreme` | every strategy stays finite, positive and right in `scenes/extreme` |
 //! | `stability` | the verb shows where arithmetic breaks and that ours does not |
@@ -17,3 +18,4 @@ mod stability;
 mod translation;
 mod triangle;
 mod visibility;
+mod watertight;

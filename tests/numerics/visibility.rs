@@ -165,7 +165,7 @@ fn emitters_block_themselves_unless_the_far_end_is_short() {
         for at in stage.receivers() {
             for light in stage.scene().lights() {
                 let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], at) else { continue };
-                let segment = stage.offset().segment(at, light, arrival.direction, arrival.distance);
+                let segment = stage.ray_ends().segment(at, light, arrival.direction, arrival.distance);
                 rays += 1;
                 let Segment { origin, along, t_min, .. } = segment;
                 seen += u32::from(stage.occluders().visible(&Segment::bare(origin, along, t_min, 1.0 + 1e-5)));
@@ -276,7 +276,7 @@ fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
         let at = receiver(from, Vec3::NEG_Y);
         let light = &stage.scene().lights()[light];
         let arrival = contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], &at).expect("in front");
-        stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+        stage.occluders().visible(&stage.ray_ends().segment(&at, light, arrival.direction, arrival.distance))
     };
     assert!(!seen(Vec3::new(0.3, 0.0, 2.2), 0), "the wall is in the poster's shadow");
     assert!(seen(Vec3::new(0.7, 0.0, 2.2), 0), "the wall beside it is not");
@@ -285,7 +285,7 @@ fn what_stands_a_millimetre_before_a_surface_or_a_light_still_blocks() {
         let at = receiver(Vec3::new(0.3, -4.0, 0.0), Vec3::Z);
         let light = &stage.scene().lights()[light];
         contribution::<0b1111>(LightSampling::Area, light, [0.4, 0.6], &at).is_ok_and(|arrival| {
-            stage.occluders().visible(&stage.offset().segment(&at, light, arrival.direction, arrival.distance))
+            stage.occluders().visible(&stage.ray_ends().segment(&at, light, arrival.direction, arrival.distance))
         })
     };
     assert!(street(0), "the street sees the lamp before it");

@@ -11,7 +11,7 @@ use crate::shading::contribution::{Arrival, contribution};
 use crate::shading::importance::importance;
 use crate::strategy::{BuildContext, Pick, Tally};
 use crate::visibility::occluders::Occluders;
-use crate::visibility::offset::Offset;
+use crate::visibility::offset::RayEnds;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub(in crate::strategies) struct TargetFunction {
     scene: Arc<Scene>,
     /// `None` where nothing can stand between a receiver and a light.
     occluders: Option<Arc<Occluders>>,
-    offset: Offset,
+    ray_ends: RayEnds,
     by: LightSampling,
 }
 
@@ -28,7 +28,7 @@ impl TargetFunction {
     pub(in crate::strategies) fn new(context: BuildContext<'_>) -> Self {
         let stage = context.stage;
         let occluders = stage.needs().occlusion.then(|| Arc::clone(stage.occluders()));
-        Self { scene: Arc::clone(stage.scene()), occluders, offset: stage.offset(), by: stage.light_sampling() }
+        Self { scene: Arc::clone(stage.scene()), occluders, ray_ends: stage.ray_ends(), by: stage.light_sampling() }
     }
 
     pub(in crate::strategies) fn scene(&self) -> &Scene {
@@ -68,7 +68,7 @@ impl TargetFunction {
         let light = &self.scene.lights()[pick.light as usize];
         tally.shadow_rays(1);
         // The very ray that the harness would cast: what is hidden here is hidden there.
-        let segment = self.offset.segment(at, light, arrival.direction, arrival.distance);
+        let segment = self.ray_ends.segment(at, light, arrival.direction, arrival.distance);
         (value(arrival), occluders.visible(&segment))
     }
 

@@ -5,10 +5,9 @@ use crate::base::error::Result;
 use crate::base::random::Stream;
 use crate::record::study::Cell;
 use crate::scene::Scene;
-use crate::scene::light::{Kind, Light};
+use crate::scene::light::Kind;
 use crate::scene::light_sampling::LightSampling;
-use crate::scene::receiver::Receiver;
-use crate::shading::contribution::{Arrival, contribution};
+use crate::shading::contribution::contribution;
 use crate::stability::tracer::{Tracer, Truth, tolerance};
 use crate::visibility::occluders::Occluders;
 use crate::visibility::offset::Offset;
@@ -79,6 +78,7 @@ pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; 
     let tolerance = tolerance(scene);
     let occluders = Occluders::new(scene);
     let tracer = Tracer::new(scene);
+    let ends = POLICIES.map(|(_, policy)| policy.in_scene(scene));
     let found = (0..count).into_par_iter().map(|number| {
         let mut stream = Stream::keyed(&[seed, u64::from_le_bytes(*b"offsets\0"), number as u64]);
         let at = geometry::receiver(scene, &mut stream, number);
@@ -90,8 +90,9 @@ pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; 
             let uv = stream.uniform2();
             let Ok(arrival) = contribution::<0b1111>(LightSampling::Area, light, uv, &at) else { continue };
             let (truth, exact) = tracer.sees(tolerance, &at, (light, own), uv);
-            for ((_, offset), counts) in POLICIES.iter().zip(&mut counts) {
-                counts.note(truth, exact, seen(&occluders, offset, &at, light, &arrival));
+            for (ends, counts) in ends.iter().zip(&mut counts) {
+                let ray = ends.segment(&at, light, arrival.direction, arrival.distance);
+                counts.note(truth, exact, occluders.visible(&ray));
             }
         }
         counts
@@ -101,9 +102,4 @@ pub(super) fn counts(scene: &Scene, count: usize, seed: u64) -> Result<[Counts; 
         all
     };
     Ok(found.reduce(|| [Counts::default(); POLICIES.len()], add))
-}
-
-/// What the renderer sees.
-fn seen(occluders: &Occluders, offset: &Offset, at: &Receiver, light: &Light, arrival: &Arrival) -> bool {
-    occluders.visible(&offset.segment(at, light, arrival.direction, arrival.distance))
 }
