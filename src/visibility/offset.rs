@@ -78,7 +78,7 @@ impl Offset {
     /// The same policy with the far end left where it is: the light's own surface then blocks it. For tests.
     #[cfg(test)]
     pub(crate) const fn without_far(self) -> Self {
-        Self { far: 0.0, far_relative: 0.0, horizons: false, ..self }
+        Self { far: 0.0, far_relative: 0.0, push_in_scene: 0.0, horizons: false, ..self }
     }
 
     /// The policy of that name.
