@@ -71,7 +71,9 @@ pub(crate) fn grid_side(points: u32, share: f64) -> u32 {
 
 /// Mean contribution, in cd/m^2, over a jittered grid of `side * side` points on a triangle, shadow rays included.
 ///
-/// By area, however the stage draws its points: what judges those must not share their arithmetic.
+/// By area where the light looks small, however the stage draws its points: what judges those must not share their
+/// arithmetic. Where it looks large or has a near end, points by area hit the few places that matter too seldom, and are
+/// drawn in proportion to the irradiance: by the map that no strategy takes unless it is told to.
 pub(crate) fn stratified(
     stage: &Stage,
     at: &Receiver,
@@ -96,10 +98,14 @@ pub(super) fn grid(
     mut each: impl FnMut(DVec3),
 ) {
     let step = 1.0 / side as f32;
+    let by = match LightSampling::Auto.settled(light, at) {
+        LightSampling::Area => LightSampling::Area,
+        _ => LightSampling::Projected,
+    };
     for cell in 0..side * side {
         let [u, v] = rng.uniform2();
         let uv = [((cell % side) as f32 + u) * step, ((cell / side) as f32 + v) * step];
-        each(shadowed(stage, LightSampling::Area, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays));
+        each(shadowed(stage, by, at, light, uv.map(|x| x.min(1.0 - f32::EPSILON)), rays));
     }
 }
 

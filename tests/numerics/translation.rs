@@ -153,6 +153,18 @@ fn a_recipe_a_hundred_times_as_large_gives_the_same_picture() {
     }
 }
 
+#[test]
+fn a_model_on_a_table_gives_the_picture_of_the_street_to_the_bit() {
+    let street = whole(read(DVec3::ZERO, 1.0));
+    let wanted = bits(&image("all", &street, 2));
+    for scale in [2f64.powi(-8), 2f64.powi(-4)] {
+        let model = whole(read(DVec3::ZERO, scale));
+        let image = bits(&image("all", &model, 2));
+        let differ = image.iter().zip(&wanted).filter(|(a, b)| a != b).count();
+        assert!(image.len() == wanted.len() && differ == 0, "times {scale}: {differ} of {} differ", wanted.len());
+    }
+}
+
 /// The parts of a scene with every place put through `place`.
 fn placed(mut parts: Parts, place: impl Fn(Vec3) -> Vec3) -> Parts {
     for surface in &mut parts.surfaces {

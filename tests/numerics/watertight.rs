@@ -2,9 +2,12 @@
 
 use crate::promises::common::ground;
 use citylights::base::random::Stream;
+use citylights::render::exact::exact;
 use citylights::scene::{Parts, Scene, Surface};
+use citylights::sources::{Overrides, recipe};
 use citylights::visibility::occluders::Occluders;
-use citylights::visibility::offset::Segment;
+use citylights::visibility::offset::{Offset, Segment};
+use citylights::visibility::stage::{LeaveOut, Stage};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -163,4 +166,16 @@ fn nothing_passes_through_a_sheet_and_everything_beside_it() {
         })
         .sum();
     assert_eq!(wrong, 0, "of {} rays", 3 * RAYS * MESHES);
+}
+
+#[test]
+fn a_roof_of_two_triangles_has_no_gap_along_its_diagonal() {
+    let text = include_str!("../data/diagonal.toml");
+    let scene = recipe::parse(text, "diagonal.toml".as_ref(), &Overrides::default()).expect("a scene");
+    for (name, policy) in Offset::NAMED {
+        let stage = Stage::new(scene.clone(), LeaveOut::Yes, policy);
+        assert_eq!(stage.receivers().len(), 16 * 12, "{name}: the camera looks at the ground, below the roof");
+        let lit = stage.receivers().iter().filter(|at| exact(&stage, at, 1, 1).mean() != DVec3::ZERO).count();
+        assert_eq!(lit, 0, "{name}: pixels in the umbra are lit");
+    }
 }

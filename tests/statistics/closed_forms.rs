@@ -179,3 +179,18 @@ fn a_closed_box_keeps_light_out_and_in() {
         }
     }
 }
+
+#[test]
+fn a_light_of_kilometres_overhead_is_exact_in_the_reference() {
+    for half in [1e3, 1e6] {
+        let light = panel(Vec3::new(-half, -half, 11.0), Vec3::Y * (2.0 * half), Vec3::X * (2.0 * half), 10.0);
+        let stage = stage(ground(40.0, light.to_vec()));
+        for place in [Vec3::ZERO, Vec3::new(9.0, -3.0, 0.0)] {
+            let at = receiver(place, Vec3::Z);
+            let corners = |shape: &Shape| Light::from(*shape).corners();
+            let wanted: f64 = light.iter().map(|shape| lambert(corners(shape), place, Vec3::Z)).sum();
+            let mean = exact(&stage, &at, 400, 3).mean().x * PI / f64::from(ALBEDO) / 10.0;
+            assert!((mean / wanted - 1.0).abs() < 1e-6, "{half} m: {mean}, not {wanted}");
+        }
+    }
+}
