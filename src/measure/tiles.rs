@@ -27,8 +27,8 @@ pub(super) struct TileFile {
     known: Vec<bool>,
 }
 
-/// One receiver as stored: nine f64 of radiance and a count of rays.
-const VALUE: usize = 80;
+/// One receiver as stored: nine f64 of radiance, two marks and a count of rays.
+const VALUE: usize = 96;
 
 /// Digits of the hash that a file is named by; all of it stands in its head.
 const NAME: usize = 32;
@@ -62,6 +62,7 @@ impl TileFile {
             for vector in [value.sum, value.halves[0], value.halves[1]] {
                 vector.to_array().iter().for_each(|x| bytes.extend(x.to_le_bytes()));
             }
+            value.marks.iter().for_each(|mark| bytes.extend(mark.to_le_bytes()));
             bytes.extend(value.rays.to_le_bytes());
         }
         bytes.extend(checksum(&bytes));
@@ -137,12 +138,14 @@ fn record(bytes: &[u8], start: usize, receivers: usize) -> Option<(usize, Vec<Ex
     if bytes.get(end..end + 16)? != checksum(&bytes[start..end]) {
         return None;
     }
-    let number = |at: usize| bytes[at..at + 8].try_into().map_or(f64::NAN, f64::from_le_bytes);
+    let whole = |at: usize| bytes[at..at + 8].try_into().map_or(0, u64::from_le_bytes);
+    let number = |at: usize| f64::from_bits(whole(at));
     let vector = |at: usize| DVec3::new(number(at), number(at + 8), number(at + 16));
     let values = (start + 8..end).step_by(VALUE).map(|at| Exact {
         sum: vector(at),
         halves: [vector(at + 24), vector(at + 48)],
-        rays: number(at + 72).to_bits(),
+        marks: [whole(at + 72), whole(at + 80)],
+        rays: whole(at + 88),
     });
     Some((tile, values.collect(), end + 16))
 }
@@ -158,7 +161,7 @@ mod tests {
     use super::*;
 
     fn value(x: f64) -> Exact {
-        Exact { sum: DVec3::splat(x), halves: [DVec3::splat(-x); 2], rays: 7 }
+        Exact { sum: DVec3::splat(x), halves: [DVec3::splat(-x); 2], marks: [1, 2], rays: 7 }
     }
 
     const HASH: &str = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";

@@ -22,6 +22,8 @@ pub struct Exact {
     pub sum: DVec3,
     /// Triangles, twice.
     pub halves: [DVec3; 2],
+    /// The next random number of each half: the same where they drew the same.
+    pub marks: [u64; 2],
     /// Shadow rays cast.
     pub rays: u64,
 }
@@ -42,7 +44,7 @@ pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
     if total <= 0.0 {
         return result;
     }
-    for (half, sum) in result.halves.iter_mut().enumerate() {
+    for (half, (sum, mark)) in result.halves.iter_mut().zip(&mut result.marks).enumerate() {
         let mut rng = Stream::keyed(&[seed, half as u64, u64::from(at.pixel), u64::from(points)]);
         for light in triangles(lights) {
             let share = f64::from(importance(light, at)) / total;
@@ -50,6 +52,7 @@ pub fn exact(stage: &Stage, at: &Receiver, points: u32, seed: u64) -> Exact {
                 *sum += stratified(stage, at, light, grid_side(points, share), &mut rng, &mut result.rays);
             }
         }
+        *mark = rng.bits();
     }
     result
 }

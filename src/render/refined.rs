@@ -75,7 +75,7 @@ pub(crate) fn refined(stage: &Stage, at: &Receiver, price: Price, seed: u64) -> 
             (open.light, Share::Grid(worth.side(&seen)))
         })
         .collect();
-    let halves = [0, 1].map(|half| {
+    let [(first, mark), (second, another)] = [0, 1].map(|half| {
         let mut rng = Stream::keyed(&[seed, half, u64::from(at.pixel), price.a_ray.to_bits()]);
         // Where the chances of the lights up to one pass a whole number more, that one is sampled.
         let mut chances = rng.uniform64();
@@ -92,9 +92,9 @@ pub(crate) fn refined(stage: &Stage, at: &Receiver, price: Price, seed: u64) -> 
                 }
             }
         }
-        sum
+        (sum, rng.bits())
     });
-    Exact { sum, halves, rays }
+    Exact { sum, halves: [first, second], marks: [mark, another], rays }
 }
 
 /// Names the random numbers of looks: never a half's.
