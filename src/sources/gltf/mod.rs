@@ -21,15 +21,25 @@
 //! Source: Khronos Group, glTF 2.0 specification, 2021; `KHR_lights_punctual`, `KHR_materials_emissive_strength`.
 
 mod accessor;
+mod albedo;
 mod camera;
+mod coverage;
 mod document;
+mod extensions;
 mod extras;
+mod glow;
 mod groups;
+mod images;
+mod instances;
 mod lights;
+mod looks;
+mod mapping;
 mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod picture;
+mod planes;
 mod read;
 mod reader;
 mod source;
