@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 /// Most cells of textures that are looked at, in all and for a triangle.
-const MOST_CELLS: usize = 1 << 25;
+const MOST_CELLS: usize = 1 << 24;
 const MOST_CELLS_EACH: usize = 1 << 8;
 
 /// A primitive with a textured base colour, at the first node that shows it.

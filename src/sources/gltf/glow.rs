@@ -21,8 +21,8 @@ const DEEPEST: u32 = 5;
 const ALIKE: f32 = 1.0 / 32.0;
 /// Pieces darker than this share of the brightest texel reflect.
 const DARK: f32 = 1.0 / 500.0;
-/// Most cells of textures that are looked at, in all and for a piece: 2^26 take a few seconds.
-const MOST_CELLS: usize = 1 << 26;
+/// Most cells of textures that are looked at, in all and for a piece: 2^24 take a second.
+const MOST_CELLS: usize = 1 << 24;
 const MOST_CELLS_EACH: usize = 1 << 12;
 
 /// A textured emitter.

@@ -20,6 +20,8 @@ const LARGEST_FILE: u64 = 1 << 28;
 const ALWAYS: u64 = 1 << 22;
 /// Texels that all images of a file may have.
 const ALWAYS_IN_ALL: u64 = 1 << 25;
+/// Texels that all images of a file may have beyond that, whatever their bytes: they take half a minute.
+const MOST_IN_ALL: u64 = 1 << 31;
 /// Texels for each byte of an image, beyond that: as many as deflate can pack of one colour.
 const FOR_A_BYTE: u64 = 400;
 /// Most texels of an image: 16384 x 8192.
@@ -29,6 +31,8 @@ const MOST: u64 = 1 << 27;
 pub(super) struct Images<'r> {
     reader: &'r Reader<'r>,
     left: u64,
+    /// What may still be added to that.
+    room: u64,
 }
 
 impl<'r> Images<'r> {
@@ -36,17 +40,30 @@ impl<'r> Images<'r> {
     pub(super) fn new(reader: &'r Reader<'r>) -> Self {
         let buffers: usize = reader.buffers.iter().map(|buffer| buffer.len()).sum();
         let within: usize = reader.document.images.iter().filter_map(|image| image.uri.as_ref()).map(String::len).sum();
-        Self { reader, left: ALWAYS_IN_ALL + FOR_A_BYTE * (buffers + within) as u64 }
+        let mut images = Self { reader, left: ALWAYS_IN_ALL, room: MOST_IN_ALL };
+        images.add(buffers + within);
+        images
+    }
+
+    /// Adds texels for these bytes.
+    fn add(&mut self, bytes: usize) {
+        let more = FOR_A_BYTE.saturating_mul(bytes as u64).min(self.room);
+        (self.left, self.room) = (self.left + more, self.room - more);
     }
 
     /// Decodes the image of that number, which is in the document.
     pub(super) fn picture(&mut self, id: u32) -> Result<Picture> {
         let entry = &self.reader.document.images[id as usize];
-        let bytes = self.bytes(id, entry)?;
-        if entry.uri.as_ref().is_some_and(|uri| !uri.starts_with("data:")) {
-            self.left += FOR_A_BYTE * bytes.len() as u64;
-        }
         let refuse = |message: &dyn Display| self.reader.wrong(format_args!("images[{id}]"), message);
+        if self.left == 0 {
+            return Err(refuse(&"the images before it have as many texels as this file may have; scale them down"));
+        }
+        let bytes = self.bytes(id, entry)?;
+        if entry.uri.as_deref().is_some_and(|uri| !uri.starts_with("data:")) {
+            self.add(bytes.len());
+        }
+        // Reading takes time too.
+        self.left = self.left.saturating_sub(bytes.len() as u64);
         let most = (ALWAYS + FOR_A_BYTE * bytes.len() as u64).min(MOST).min(self.left);
         let decode = if bytes.starts_with(b"\x89PNG") {
             png
@@ -54,7 +71,7 @@ impl<'r> Images<'r> {
             jpeg
         } else {
             return Err(refuse(&format_args!(
-                "\"{}\" begins it; PNG and JPEG are read here",
+                "\"{}\" begins it; PNG and JPEG are read here; `gltf-transform png`, or `ktxdecompress`, makes PNG of it",
                 bytes[..bytes.len().min(8)].escape_ascii()
             )));
         };

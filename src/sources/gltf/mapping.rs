@@ -48,7 +48,7 @@ impl Reader<'_> {
         let source = format!("textures[{id}].source");
         let Some(image) = texture.source else {
             let text = "is missing: PNG and JPEG are read here, and this texture has another format alone; \
-                        `gltf-transform png` makes PNG of it";
+                        `gltf-transform png`, or `ktxdecompress`, makes PNG of it";
             return Err(self.wrong(source, text));
         };
         if image as usize >= images.len() {

@@ -193,11 +193,12 @@ impl Source<'_> {
                 shown()
             ))
         })?;
-        let folder = self.0.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = self.0.parent().unwrap_or(Path::new(""));
         let path = folder.join(path);
         if !path.is_file() {
             return Err(refuse(&format_args!("there is no file {}", path.display())));
         }
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let [inside, whole] = [folder, &path].map(|path| path.canonicalize().map_err(Error::io("read", path)));
         if !whole?.starts_with(inside?) {
             let text = "is given, a link out of the scene's folder; copy the file there";
