@@ -11,6 +11,7 @@ use citylights::scene::Scene;
 use citylights::sources::{Overrides, open};
 use glam::Vec3;
 use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
 
 /// Places on the ground.
 const SPOTS: [Vec3; 3] = [Vec3::ZERO, Vec3::new(2.5, 0.3, 0.0), Vec3::new(-0.4, -3.0, 0.0)];
@@ -171,12 +172,12 @@ fn texture_transforms_place_the_image() {
         })
     };
     // The extension's own examples: the lower left quarter, turned, is all of one level here; then upside down.
-    let quarter = transform(json!({ "offset": [0, 1], "rotation": 1.570_796_326_79, "scale": [0.5, 0.5] }));
+    let quarter = transform(json!({ "offset": [0, 1], "rotation": FRAC_PI_2, "scale": [0.5, 0.5] }));
     shines(&quarter, &[(WHOLE, WHOLE, linear(128))], 5e-3);
     let turned = transform(json!({ "offset": [0, 1], "scale": [1, -1] }));
     shines(&turned, &[(LOW, LOW, linear(128)), (LOW, HIGH, 1.0), (HIGH, HIGH, linear(188))], 5e-3);
     // A quarter turn: (u, v) goes to (v, 1 - u).
-    let turned = transform(json!({ "offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2 }));
+    let turned = transform(json!({ "offset": [0, 1], "rotation": FRAC_PI_2 }));
     shines(&turned, &[(LOW, LOW, linear(128)), (HIGH, LOW, 1.0), (HIGH, HIGH, linear(188))], 5e-3);
     // Another set of coordinates, the right half, by the texture or by its transform.
     for info in [
@@ -214,7 +215,9 @@ fn textures_wrap_as_their_samplers_say() {
     ] {
         let mut sampler = json!({});
         for (name, wrap) in ["wrapS", "wrapT"].into_iter().zip(wraps) {
-            wrap.map(|wrap: u32| sampler[name] = json!(wrap));
+            if let Some(wrap) = wrap {
+                sampler[name] = json!(wrap);
+            }
         }
         shines(&mapped(beside.clone(), Some(sampler), |_| ()), &parts, 5e-3);
     }

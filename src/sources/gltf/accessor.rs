@@ -297,7 +297,7 @@ impl<'a> Reader<'a> {
             return Err(self.wrong(format_args!("bufferViews[{view_id}].byteStride"), text));
         }
         let component = size_of(kind) as u64;
-        if (part.offset.wrapping_add(view.byte_offset)) % component != 0 {
+        if !part.offset.wrapping_add(view.byte_offset).is_multiple_of(component) {
             let (at, from) = (part.offset, view.byte_offset);
             let text =
                 format_args!("{at} is given after {from} of the view; the sum must be a multiple of {component}");
