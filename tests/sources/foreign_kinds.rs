@@ -45,7 +45,7 @@ fn requires(name: &'static str) -> File {
 
 fn instanced(lamps: bool) -> File {
     let mut file = File::ground();
-    let places = file.positions(&[[0.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+    let places = file.positions(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": places } } });
     let corners = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.1]];
     file.emitter(corners, 4000.0, false, json!({ "translation": [0, 2, 0], "extensions": extension }));
@@ -162,8 +162,8 @@ fn kinds() -> Vec<(&'static str, Vec<u8>, Right)> {
         ),
         ("required KHR_texture_transform", requires("KHR_texture_transform").glb(), Lux(OF_LAMP)),
         ("specular-glossiness", glossy.glb(), Lux(OF_LAMP)),
-        ("instanced emitters", instanced(false).glb(), Lux(emitter / 4.0 + emitter / 16.0)),
-        ("instanced lamps", instanced(true).glb(), Lux(OF_LAMP + 70.0 / 16.0)),
+        ("instanced emitters", instanced(false).glb(), Lux(emitter / 4.0 + emitter * 4.0 / 25.0)),
+        ("instanced lamps", instanced(true).glb(), Lux(OF_LAMP + 140.0 / 5f64.powf(1.5))),
         ("quantized positions", quantized.glb(), Lux(p)),
         ("sparse positions", sparse.glb(), Lux(p)),
         ("morph targets", morphed.glb(), Lux(p)),

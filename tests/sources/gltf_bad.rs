@@ -146,7 +146,7 @@ fn wrong_values_are_told_with_their_path() {
             "/extensions/KHR_lights_punctual/lights/1/spot",
             json!({ "outerConeAngle": 2 }),
             "extensions.KHR_lights_punctual.lights[1].spot.outerConeAngle",
-            "to 90 degrees",
+            "(90 degrees)",
         ),
         (
             "/extensions/KHR_lights_punctual/lights/1/spot",

@@ -62,11 +62,11 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let to_world = above * self.transform(id, node)?;
-            let instances = match &node.extensions.instancing {
-                Some(instancing) => self.instances(id, instancing)?,
-                None => vec![DAffine3::IDENTITY],
-            };
-            total += instances.len() * (1 + node.children.len());
+            let mut places = vec![to_world];
+            if let Some(instancing) = &node.extensions.instancing {
+                places = self.instances(id, instancing)?.into_iter().map(|instance| to_world * instance).collect();
+            }
+            total += places.len() * (1 + node.children.len());
             if total > most {
                 let text =
                     format!("with those of this node there are more than {most} instances, the most for this file");
@@ -76,10 +76,10 @@ impl<'a> Reader<'a> {
             let more = !node.children.is_empty() || node.extensions.light.is_some();
             together += usize::from(node.extensions.instancing.is_some() && more);
             if carries {
-                placed.extend(instances.iter().map(|instance| Placed { id, to_world: to_world * *instance }));
+                placed.extend(places.iter().map(|&to_world| Placed { id, to_world }));
             }
-            for instance in instances.iter().rev() {
-                waiting.extend(node.children.iter().rev().map(|&child| (child, to_world * *instance)));
+            for &place in places.iter().rev() {
+                waiting.extend(node.children.iter().rev().map(|&child| (child, place)));
             }
         }
         if hidden > 0 {
