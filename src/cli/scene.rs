@@ -25,6 +25,9 @@ pub(super) struct SceneOptions {
     /// The camera of a glTF file, by the name of its node or its own; the first by default
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    /// What the lamps of a glTF file are divided by: 683 where Blender's exporter wrote them in its default lighting mode
+    #[arg(long, value_name = "X", value_parser = positive)]
+    lamps_divided_by: Option<f32>,
     /// Exposure value at ISO 100, instead of the file's
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]
     ev100: Option<f32>,
@@ -54,6 +57,7 @@ impl SceneOptions {
                 ev100,
                 lights: None,
                 camera: self.camera.clone(),
+                lamps_divided_by: self.lamps_divided_by,
             },
         )?;
         for note in scene.notes() {
@@ -73,6 +77,7 @@ impl SceneOptions {
         add("scene-seed", self.scene_seed.map(|seed| seed.to_string()));
         add("resolution", self.resolution.map(|(width, height)| format!("{width}x{height}")));
         add("camera", self.camera.clone());
+        add("lamps-divided-by", self.lamps_divided_by.map(|by| by.to_string()));
         add("ev100", self.ev100.map(|ev100| ev100.to_string()));
         add("exposure", self.exposure.map(|exposure| exposure.to_string()));
         let offset = Offset::all().find(|(_, offset)| *offset == self.offset).filter(|_| self.offset != Offset::SCALED);

@@ -13,4 +13,7 @@ pub struct Overrides {
     pub lights: Option<u64>,
     /// The camera of a glTF file, by the name of its node or its own.
     pub camera: Option<String>,
+    /// What the punctual lights of a glTF file are divided by: 683 for those that Blender's exporter wrote as it does by
+    /// default.
+    pub lamps_divided_by: Option<f32>,
 }

@@ -2,15 +2,12 @@
 //! as it says.
 #![cfg(feature = "gltf")]
 
-use crate::common::{ALBEDO, digest, lambert, receiver, stage};
-use crate::made::File;
+use crate::common::{digest, lambert, stage};
+use crate::made::{File, irradiance, near};
 use citylights::base::random::Stream;
-use citylights::render::exact::exact;
 use citylights::scene::camera::Camera;
 use citylights::scene::light::Shape;
 use citylights::scene::{Parts, Scene, Surface};
-use citylights::visibility::offset::Offset;
-use citylights::visibility::stage::{LeaveOut, Stage};
 use citylights::visibility::view::Seen;
 use glam::{DVec3, Mat4, Vec3};
 use serde_json::{Value, json};
@@ -45,16 +42,6 @@ fn turned(corners: [[f32; 3]; 3]) -> [Vec3; 3] {
 /// The outward normal, not normalised.
 fn normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     (b - a).cross(c - a)
-}
-
-/// Irradiance on the red channel of a white emitter or a white lamp, in lux.
-fn irradiance(scene: &Scene, position: Vec3, normal: Vec3) -> f64 {
-    let stage = Stage::new(scene.clone(), LeaveOut::No, Offset::SCALED);
-    exact(&stage, &receiver(position, normal), 40_000, 1).mean().x * PI / f64::from(ALBEDO)
-}
-
-fn near(found: f64, wanted: f64, relative: f64) {
-    assert!((found / wanted - 1.0).abs() < relative, "{found} for {wanted}, ratio {}", found / wanted);
 }
 
 #[test]

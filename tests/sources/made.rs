@@ -1,10 +1,16 @@
 //! glTF files as a test wants them, right or wrong: the JSON is free to be changed before it is written.
 
+use crate::common::{ALBEDO, receiver};
 use citylights::base::error::Result;
+use citylights::render::exact::exact;
 use citylights::scene::Scene;
 use citylights::sources::Overrides;
 use citylights::sources::gltf::parse;
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
+use glam::Vec3;
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// A file being made.
@@ -22,7 +28,7 @@ impl File {
             "scene": 0,
             "scenes": [{ "nodes": [] }],
             "nodes": [], "meshes": [], "materials": [], "cameras": [],
-            "accessors": [], "bufferViews": [], "buffers": [],
+            "accessors": [], "bufferViews": [], "buffers": [], "textures": [], "images": [], "samplers": [],
             "extensions": { "KHR_lights_punctual": { "lights": [] } },
             "extensionsUsed": ["KHR_lights_punctual"],
         });
@@ -124,12 +130,18 @@ impl File {
         self.accessor(&bytes, kind, indices.len(), "SCALAR")
     }
 
-    fn accessor(&mut self, bytes: &[u8], kind: u32, count: usize, shape: &str) -> usize {
+    /// Adds an accessor of these bytes.
+    pub(crate) fn accessor(&mut self, bytes: &[u8], kind: u32, count: usize, shape: &str) -> usize {
+        let view = self.view(bytes);
+        self.push("accessors", json!({ "bufferView": view, "componentType": kind, "count": count, "type": shape }))
+    }
+
+    /// Adds a buffer view of these bytes.
+    pub(crate) fn view(&mut self, bytes: &[u8]) -> usize {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let at = self.bin.len();
         self.bin.extend(bytes);
-        let view = self.push("bufferViews", json!({ "buffer": 0, "byteOffset": at, "byteLength": bytes.len() }));
-        self.push("accessors", json!({ "bufferView": view, "componentType": kind, "count": count, "type": shape }))
+        self.push("bufferViews", json!({ "buffer": 0, "byteOffset": at, "byteLength": bytes.len() }))
     }
 
     /// The JSON with its buffer at `uri`; a list of buffers that was set by hand stays.
@@ -176,6 +188,21 @@ impl File {
     pub(crate) fn scene(&self) -> Scene {
         self.read().unwrap_or_else(|error| panic!("{error}"))
     }
+}
+
+/// Irradiance on the red channel, in lux; `samples` of each triangle light.
+pub(crate) fn irradiance_by(scene: &Scene, position: Vec3, normal: Vec3, samples: u32) -> f64 {
+    let stage = Stage::new(scene.clone(), LeaveOut::No, Offset::SCALED);
+    exact(&stage, &receiver(position, normal), samples, 1).mean().x * PI / f64::from(ALBEDO)
+}
+
+/// The same with many samples.
+pub(crate) fn irradiance(scene: &Scene, position: Vec3, normal: Vec3) -> f64 {
+    irradiance_by(scene, position, normal, 40_000)
+}
+
+pub(crate) fn near(found: f64, wanted: f64, relative: f64) {
+    assert!((found / wanted - 1.0).abs() < relative, "{found} for {wanted}, ratio {}", found / wanted);
 }
 
 /// The container of a JSON and a binary chunk.

@@ -10,6 +10,10 @@
 //! | `gltf_files` | a glTF file goes wherever a scene goes, and what is not used of it is told |
 //! | `gltf_bad` | whatever a document says wrong is told with its path |
 //! | `gltf_broken` | broken containers, JSON and buffers are refused |
+//! | `foreign` | files as others write them open with the right light, and with one note for each thing left out |
+//! | `foreign_geometry` | instanced, quantized, sparse and morphed meshes stand where they say |
+//! | `foreign_kinds` | twenty-four kinds of files that others write and their light; why four stay refused |
+//! | `foreign_textures` | what a texture makes of a surface is what is seen |
 //! | `large_gltf` | a hundred thousand lights in seventy thousand materials |
 //! | `mutated_inputs` | whatever bytes stand in a file, it is read or refused |
 //!
@@ -17,6 +21,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[cfg(feature = "cli")]
+mod foreign_made;
 #[cfg(feature = "gltf")]
 mod made;
 #[cfg(feature = "cli")]
@@ -24,6 +30,10 @@ mod peak;
 #[cfg(feature = "cli")]
 mod refused;
 
+mod foreign;
+mod foreign_geometry;
+mod foreign_kinds;
+mod foreign_textures;
 mod generator;
 mod gltf;
 mod gltf_bad;

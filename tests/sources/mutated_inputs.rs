@@ -4,6 +4,7 @@
 //! exchanged. `CITYLIGHTS_MUTATIONS` is how many of each format are tried; `cargo test` tries few.
 #![cfg(feature = "cli")]
 
+use crate::foreign_made::{coordinates, jpeg, panel, png, texture};
 use crate::made::{File, glb};
 use citylights::base::error::{Error, Result};
 use citylights::base::random::Stream;
@@ -157,6 +158,43 @@ fn scene() -> File {
     file
 }
 
+/// A glTF file with textures, instances, quantized and sparse positions, and morph targets.
+fn foreign() -> File {
+    let mut file = panel(|file, material| {
+        let emissive = texture(file, &png(4, &[255, 0, 9, 188, 128, 64, 3, 200]), "image/png");
+        let sampler = file.push("samplers", json!({ "wrapS": 33648, "wrapT": 33071 }));
+        file.json["textures"][emissive]["sampler"] = json!(sampler);
+        let transform = json!({ "offset": [0.1, 0.2], "rotation": 0.3, "scale": [1.5, 2] });
+        file.json["materials"][material]["emissiveTexture"] =
+            json!({ "index": emissive, "extensions": { "KHR_texture_transform": transform } });
+        let base = texture(file, &jpeg(8, &[90; 64]), "image/jpeg");
+        file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": base, "texCoord": 1 });
+        let set = coordinates(file, [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [0.0, 2.0]]);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(set);
+    });
+    let moved = file.view(&[0, 0, 128, 63, 0, 0, 128, 64, 0, 0, 0, 0]);
+    let which = file.view(&[2]);
+    let sparse = json!({
+        "count": 1, "indices": { "bufferView": which, "componentType": 5121 }, "values": { "bufferView": moved },
+    });
+    let target = file.push("accessors", json!({ "componentType": 5126, "count": 4, "type": "VEC3", "sparse": sparse }));
+    file.json["meshes"][1]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
+    file.json["meshes"][1]["weights"] = json!([0.25]);
+    let corners = file.accessor(&[0, 0, 0, 0, 127, 0, 0, 0, 0, 0, 129, 0], 5120, 3, "VEC3");
+    let view = file.json["accessors"][corners]["bufferView"].as_u64().expect("a number") as usize;
+    file.json["bufferViews"][view]["byteStride"] = json!(4);
+    file.json["accessors"][corners]["normalized"] = json!(true);
+    let mesh = file.mesh(json!({ "attributes": { "POSITION": corners } }));
+    let places = file.positions(&[[-3.0, 1.0, 0.0], [0.0, 1.0, 3.0], [3.0, 1.0, 2.0]]);
+    let turns = file.accessor(&[0, 0, 0, 127, 0, 90, 0, 90, 0, 0, 90, 90], 5120, 3, "VEC4");
+    file.json["accessors"][turns]["normalized"] = json!(true);
+    let instancing = json!({ "attributes": { "TRANSLATION": places, "ROTATION": turns, "SCALE": places } });
+    let lamp = json!({ "light": file.light(json!({ "type": "point", "intensity": 90 })) });
+    let child = file.push("nodes", json!({ "extensions": { "KHR_lights_punctual": lamp } }));
+    file.node(json!({ "mesh": mesh, "children": [child], "extensions": { "EXT_mesh_gpu_instancing": instancing } }));
+    file
+}
+
 /// A recipe with some of everything that is placed by hand.
 const RECIPE: &str = r#"name = "corner"
 seed = 5
@@ -283,8 +321,18 @@ fn run(
 
 #[test]
 fn mutated_gltf_files_are_read_or_refused() {
-    let file = scene();
-    assert_eq!(file.scene().lights().len(), 5);
+    assert_eq!(scene().scene().lights().len(), 5);
+    mutate("glTF", &scene());
+}
+
+#[test]
+fn mutated_gltf_files_with_textures_and_instances_are_read_or_refused() {
+    let lights = foreign().scene().lights().len();
+    assert!((100..2_000).contains(&lights), "{lights}");
+    mutate("glTF with textures", &foreign());
+}
+
+fn mutate(format: &str, file: &File) {
     let whole = file.glb();
     let length = 20 + u32::from_le_bytes([whole[12], whole[13], whole[14], whole[15]]) as usize;
     let json: Value = serde_json::from_slice(&whole[20..length]).expect("JSON");
@@ -297,7 +345,7 @@ fn mutated_gltf_files_are_read_or_refused() {
         _ => glb(exchanged(stream, json.clone()).to_string().as_bytes(), &file.bin),
     };
     // A folder that is not there: no mutant finds a buffer.
-    run("glTF", &whole, mutant, |bytes| gltf::parse(bytes, "nowhere/mutant.gltf".as_ref(), &Overrides::default()));
+    run(format, &whole, mutant, |bytes| gltf::parse(bytes, "nowhere/mutant.gltf".as_ref(), &Overrides::default()));
 }
 
 #[test]

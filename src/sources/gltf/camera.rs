@@ -3,6 +3,7 @@
 use super::document::{CameraEntry, Perspective};
 use super::extras::{CameraExtras, read};
 use super::nodes::{Placed, turned, within};
+use super::planes::Planes;
 use super::reader::Reader;
 use crate::base::error::{Error, Result};
 use crate::scene::camera::Camera;
@@ -35,7 +36,7 @@ impl Candidate<'_> {
 
 impl Reader<'_> {
     /// The camera that `overrides` name, or the first; without any, a view of the whole box from `low` to `high`, the
-    /// scene's surfaces. What was decided here is told in `notes`.
+    /// scene's surfaces; and what its planes cut away elsewhere. What was decided here is told in `notes`.
     pub(super) fn camera(
         &self,
         placed: &[Placed],
@@ -43,7 +44,7 @@ impl Reader<'_> {
         [low, high]: [DVec3; 2],
         overrides: &Overrides,
         notes: &mut Vec<String>,
-    ) -> Result<Camera> {
+    ) -> Result<(Camera, Planes)> {
         let candidates = self.candidates(placed)?;
         let chosen = match &overrides.camera {
             Some(wanted) => Some(self.named(&candidates, wanted, notes)?),
@@ -56,12 +57,14 @@ impl Reader<'_> {
             let eye = centre + DVec3::new(0.0, -0.8, 0.6) * (radius / 30f64.to_radians().sin());
             let (width, height) = overrides.resolution.unwrap_or(RESOLUTION);
             return Camera::new(eye.as_vec3(), centre.as_vec3(), 60.0, width, height)
+                .map(|camera| (camera, Planes { near: 0.0, far: f64::INFINITY }))
                 .map_err(|error| self.of_camera("cameras", error));
         };
         if overrides.camera.is_none() && candidates.len() > 1 {
             notes.push(format!("of {} cameras the first is used, {}", candidates.len(), chosen.name()));
         }
-        self.view(chosen, origin, overrides)
+        let planes = Planes { near: chosen.perspective.znear, far: chosen.perspective.zfar.unwrap_or(f64::INFINITY) };
+        Ok((self.view(chosen, origin, overrides)?, planes))
     }
 
     fn candidates<'a>(&'a self, placed: &'a [Placed]) -> Result<Vec<Candidate<'a>>> {

@@ -4,6 +4,7 @@
 //! `gltf-json` crate cut an index of 2^32 down to 0 and ask for fields that may be left out. What is not named here is
 //! skipped without being stored, so that a document takes memory in proportion to its length only.
 
+use super::looks::{Image, Material, Sampler, Texture};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, IgnoredAny, SeqAccess, Visitor};
 use serde_json::value::RawValue;
@@ -45,6 +46,12 @@ pub(super) struct Document<'a> {
     #[serde(default)]
     pub(super) skins: List<IgnoredAny>,
     #[serde(default)]
+    pub(super) textures: List<Texture>,
+    #[serde(default)]
+    pub(super) images: List<Image>,
+    #[serde(default)]
+    pub(super) samplers: List<Sampler>,
+    #[serde(default)]
     pub(super) extensions: Extensions,
 }
 
@@ -53,6 +60,7 @@ pub(super) struct Document<'a> {
 pub(super) struct Asset {
     pub(super) version: String,
     pub(super) min_version: Option<String>,
+    pub(super) generator: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -76,6 +84,8 @@ pub(super) struct Node {
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    /// Of the morph targets of its mesh, instead of the mesh's own.
+    pub(super) weights: Option<Vec<f64>>,
     #[serde(default)]
     pub(super) extensions: NodeExtensions,
 }
@@ -84,6 +94,28 @@ pub(super) struct Node {
 pub(super) struct NodeExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub(super) light: Option<LightOfNode>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instancing: Option<Instancing>,
+    #[serde(rename = "KHR_node_visibility")]
+    pub(super) visibility: Option<Visibility>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Instancing {
+    pub(super) attributes: InstanceAttributes,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct InstanceAttributes {
+    pub(super) translation: Option<u32>,
+    pub(super) rotation: Option<u32>,
+    pub(super) scale: Option<u32>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Visibility {
+    pub(super) visible: Option<bool>,
 }
 
 #[derive(Deserialize)]
@@ -94,6 +126,8 @@ pub(super) struct LightOfNode {
 #[derive(Deserialize)]
 pub(super) struct Mesh {
     pub(super) primitives: Vec<Primitive>,
+    /// Of the morph targets of all its primitives.
+    pub(super) weights: Option<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -102,7 +136,15 @@ pub(super) struct Primitive {
     pub(super) indices: Option<u32>,
     pub(super) material: Option<u32>,
     pub(super) mode: Option<u32>,
-    pub(super) targets: Option<IgnoredAny>,
+    #[serde(default)]
+    pub(super) targets: Vec<Target>,
+}
+
+/// What a morph target adds.
+#[derive(Deserialize)]
+pub(super) struct Target {
+    #[serde(rename = "POSITION")]
+    pub(super) position: Option<u32>,
 }
 
 #[derive(Deserialize)]
@@ -113,54 +155,22 @@ pub(super) struct Attributes {
     pub(super) colour: Option<IgnoredAny>,
     #[serde(rename = "JOINTS_0")]
     pub(super) joints: Option<IgnoredAny>,
+    #[serde(rename = "TEXCOORD_0")]
+    pub(super) coordinates_0: Option<u32>,
+    #[serde(rename = "TEXCOORD_1")]
+    pub(super) coordinates_1: Option<u32>,
+    #[serde(rename = "TEXCOORD_2")]
+    pub(super) coordinates_2: Option<u32>,
+    #[serde(rename = "TEXCOORD_3")]
+    pub(super) coordinates_3: Option<u32>,
 }
 
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Material<'a> {
-    pub(super) name: Option<String>,
-    #[serde(default)]
-    pub(super) pbr_metallic_roughness: Reflection,
-    pub(super) normal_texture: Option<IgnoredAny>,
-    pub(super) occlusion_texture: Option<IgnoredAny>,
-    pub(super) emissive_texture: Option<IgnoredAny>,
-    #[serde(default)]
-    pub(super) emissive_factor: [f64; 3],
-    pub(super) alpha_mode: Option<String>,
-    #[serde(default)]
-    pub(super) double_sided: bool,
-    #[serde(default)]
-    pub(super) extensions: MaterialExtensions,
-    #[serde(default, borrow)]
-    pub(super) extras: Option<&'a RawValue>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Reflection {
-    pub(super) base_color_factor: [f64; 4],
-    pub(super) base_color_texture: Option<IgnoredAny>,
-    pub(super) metallic_factor: f64,
-}
-
-impl Default for Reflection {
-    fn default() -> Self {
-        Self { base_color_factor: [1.0; 4], base_color_texture: None, metallic_factor: 1.0 }
+impl Attributes {
+    /// The accessor of a set of texture coordinates; exporters write four sets at most.
+    pub(super) fn coordinates(&self, set: u32) -> Option<u32> {
+        let sets = [self.coordinates_0, self.coordinates_1, self.coordinates_2, self.coordinates_3];
+        sets.get(set as usize).copied().flatten()
     }
-}
-
-#[derive(Deserialize, Default)]
-pub(super) struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_emissive_strength")]
-    pub(super) emissive_strength: Option<EmissiveStrength>,
-    #[serde(rename = "KHR_materials_unlit")]
-    pub(super) unlit: Option<IgnoredAny>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct EmissiveStrength {
-    #[serde(rename = "emissiveStrength")]
-    pub(super) strength: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -176,6 +186,9 @@ pub(super) struct CameraEntry<'a> {
 pub(super) struct Perspective {
     pub(super) yfov: f64,
     pub(super) aspect_ratio: Option<f64>,
+    #[serde(default)]
+    pub(super) znear: f64,
+    pub(super) zfar: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -188,7 +201,27 @@ pub(super) struct Accessor {
     pub(super) count: u64,
     #[serde(rename = "type")]
     pub(super) shape: String,
-    pub(super) sparse: Option<IgnoredAny>,
+    #[serde(default)]
+    pub(super) normalized: bool,
+    pub(super) sparse: Option<Box<Sparse>>,
+}
+
+/// Elements that differ from those of an accessor's view, or from zero.
+#[derive(Deserialize)]
+pub(super) struct Sparse {
+    pub(super) count: u64,
+    pub(super) indices: SparsePart,
+    pub(super) values: SparsePart,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparsePart {
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    /// Of indices; values have that of their accessor.
+    pub(super) component_type: Option<u32>,
 }
 
 #[derive(Deserialize)]

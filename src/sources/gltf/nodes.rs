@@ -4,12 +4,14 @@ use super::document::{Node, SceneEntry};
 use super::reader::Reader;
 use crate::base::error::Result;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use std::fmt::Display;
 
 /// No node.
 const NONE: u32 = u32::MAX;
 /// How far a rotation's squared length may lie from 1: digits that an exporter cut off.
 const UNIT: f64 = 0.01;
+
+/// Instances that any file may have; one with more bytes in its buffers may have as many as those.
+const LEAST_INSTANCES: usize = 1 << 16;
 
 /// A node that carries something, in its place.
 pub(super) struct Placed {
@@ -40,40 +42,94 @@ impl<'a> Reader<'a> {
         Ok((id as usize, scene))
     }
 
-    /// The nodes of the scene that carry a mesh, a light or a camera, parents before children.
-    pub(super) fn placed(&self) -> Result<Vec<Placed>> {
+    /// The nodes of the scene that carry a mesh, a light or a camera, parents before children, each once for each of its
+    /// instances. What was decided here is told in `notes`.
+    pub(super) fn placed(&self, notes: &mut Vec<String>) -> Result<Vec<Placed>> {
+        let roots = self.roots(notes)?;
+        let nodes = &self.document.nodes;
+        let bytes: usize = self.buffers.iter().map(|buffer| buffer.len()).sum();
+        let most = 2 * nodes.len() + bytes.max(LEAST_INSTANCES);
+        let mut placed = Vec::new();
+        let (mut total, mut hidden, mut together) = (0, 0, 0);
+        let mut waiting: Vec<(u32, DAffine3)> =
+            roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
+        // Every node has one parent at most and the roots are below none: but for instances no node comes twice, however
+        // deep it lies.
+        while let Some((id, above)) = waiting.pop() {
+            let node = &nodes[id as usize];
+            if node.extensions.visibility.as_ref().is_some_and(|visibility| visibility.visible == Some(false)) {
+                hidden += 1;
+                continue;
+            }
+            let to_world = above * self.transform(id, node)?;
+            let mut places = vec![to_world];
+            if let Some(instancing) = &node.extensions.instancing {
+                places = self.instances(id, instancing)?.into_iter().map(|instance| to_world * instance).collect();
+            }
+            total += places.len() * (1 + node.children.len());
+            if total > most {
+                let text =
+                    format!("with those of this node there are more than {most} instances, the most for this file");
+                return Err(self.wrong(format_args!("nodes[{id}].extensions.EXT_mesh_gpu_instancing"), text));
+            }
+            let carries = node.mesh.is_some() || node.camera.is_some() || node.extensions.light.is_some();
+            let more = !node.children.is_empty() || node.extensions.light.is_some();
+            together += usize::from(node.extensions.instancing.is_some() && more);
+            if carries {
+                placed.extend(places.iter().map(|&to_world| Placed { id, to_world }));
+            }
+            for &place in places.iter().rev() {
+                waiting.extend(node.children.iter().rev().map(|&child| (child, place)));
+            }
+        }
+        if hidden > 0 {
+            notes.push(format!("nodes that the file hides: {hidden}; left out with all below them"));
+        }
+        if together > 0 {
+            notes.push(format!(
+                "instanced nodes with lights or children: {together}; those stand at each instance as the mesh does"
+            ));
+        }
+        Ok(placed)
+    }
+
+    /// The nodes that the scene names, without those that it shows below others of them.
+    fn roots(&self, notes: &mut Vec<String>) -> Result<Vec<u32>> {
         let (scene_id, scene) = self.scene()?;
         let nodes = &self.document.nodes;
         let parents = self.parents()?;
         let mut seen = vec![false; nodes.len()];
-        let mut waiting = Vec::new();
-        for (i, &root) in scene.nodes.iter().enumerate().rev() {
-            let refuse = |text: &dyn Display| self.wrong(format_args!("scenes[{scene_id}].nodes[{i}]"), text);
+        for (i, &root) in scene.nodes.iter().enumerate() {
+            let field = format_args!("scenes[{scene_id}].nodes[{i}]");
             let Some(seen) = seen.get_mut(root as usize) else {
-                return Err(self.no_such("node", root, nodes.len(), &format_args!("scenes[{scene_id}].nodes[{i}]")));
+                return Err(self.no_such("node", root, nodes.len(), &field));
             };
             if std::mem::replace(seen, true) {
-                return Err(refuse(&format_args!("node {root} is named twice")));
-            }
-            if parents[root as usize] != NONE {
-                let parent = parents[root as usize];
-                return Err(refuse(&format_args!(
-                    "node {root} is a child of node {parent}; a scene names nodes without a parent"
-                )));
-            }
-            waiting.push((root, DAffine3::IDENTITY));
-        }
-        let mut placed = Vec::new();
-        // Every node has one parent at most and the roots have none: no node comes twice, however deep it lies.
-        while let Some((id, above)) = waiting.pop() {
-            let node = &nodes[id as usize];
-            let to_world = above * self.transform(id, node)?;
-            waiting.extend(node.children.iter().rev().map(|&child| (child, to_world)));
-            if node.mesh.is_some() || node.camera.is_some() || node.extensions.light.is_some() {
-                placed.push(Placed { id, to_world });
+                return Err(self.wrong(field, format_args!("node {root} is named twice")));
             }
         }
-        Ok(placed)
+        let mut below = vec![false; nodes.len()];
+        let mut waiting = scene.nodes.clone();
+        while let Some(id) = waiting.pop() {
+            for &child in &nodes[id as usize].children {
+                if !std::mem::replace(&mut below[child as usize], true) {
+                    waiting.push(child);
+                }
+            }
+        }
+        let roots: Vec<u32> = scene.nodes.iter().copied().filter(|&root| !below[root as usize]).collect();
+        let orphans = roots.iter().filter(|&&root| parents[root as usize] != NONE).count();
+        if orphans > 0 {
+            notes.push(format!(
+                "nodes that the scene names without their parents: {orphans}; shown as viewers do, without the parents' \
+                 transforms"
+            ));
+        }
+        if roots.len() < scene.nodes.len() {
+            let twice = scene.nodes.len() - roots.len();
+            notes.push(format!("nodes that the scene names beside one above them: {twice}; shown once, below it"));
+        }
+        Ok(roots)
     }
 
     /// The parent of each node; fails if one has two, or is its own ancestor.

@@ -1,27 +1,26 @@
 //! What in the file is not used?
 
 use super::document::Document;
-use crate::sources::name;
-
-/// Extensions that are read.
-pub(super) const EXTENSIONS: [&str; 3] =
-    ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_specular"];
-/// Extensions that add lights or decide which objects there are: not to be passed over.
-pub(super) const CHANGE_THE_LIGHT: [&str; 4] =
-    ["EXT_lights_image_based", "EXT_lights_ies", "EXT_mesh_gpu_instancing", "KHR_node_visibility"];
-/// Most extensions that are told by name.
-const MOST_NAMES: usize = 12;
+use super::extensions;
+use super::lights::is_narrow;
+use super::looks::Material;
+use crate::sources::limits::NARROWEST_CONE;
 
 /// What a reader should know was passed over, each kind of thing once.
 pub(super) fn unused(document: &Document) -> Vec<String> {
     let materials = &document.materials;
-    let reflecting = |m: &&super::document::Material| m.emissive_factor == [0.0; 3];
+    let reflecting = |m: &&Material| m.emissive_factor == [0.0; 3];
     let primitives = || document.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let counts = [
         (
-            materials.iter().filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some()).count(),
-            "base colour textures of materials",
-            "the factor alone is the albedo",
+            materials.iter().filter(|m| m.is_clamped()).count(),
+            "base colours a hair above 1 or below 0",
+            "taken as 1 and 0",
+        ),
+        (
+            materials.iter().filter(|m| m.extensions.specular_glossiness.is_some()).count(),
+            "specular-glossiness materials",
+            "their diffuse colour is the albedo",
         ),
         (
             materials.iter().filter(|m| m.normal_texture.is_some() || m.occlusion_texture.is_some()).count(),
@@ -29,7 +28,13 @@ pub(super) fn unused(document: &Document) -> Vec<String> {
             "not used",
         ),
         (
-            materials.iter().filter(reflecting).filter(|m| m.pbr_metallic_roughness.metallic_factor > 0.0).count(),
+            materials
+                .iter()
+                .filter(reflecting)
+                .filter(|m| {
+                    m.pbr_metallic_roughness.metallic_factor > 0.0 && m.extensions.specular_glossiness.is_none()
+                })
+                .count(),
             "metallic materials, as glTF has them unless a `metallicFactor` says otherwise",
             "the base colour is a Lambertian albedo",
         ),
@@ -44,10 +49,7 @@ pub(super) fn unused(document: &Document) -> Vec<String> {
             "lit here as all others",
         ),
         (
-            materials
-                .iter()
-                .filter(|m| !reflecting(m) && m.pbr_metallic_roughness.base_color_factor[..3] != [0.0; 3])
-                .count(),
+            materials.iter().filter(|m| !reflecting(m) && m.base_factor() != [0.0; 3]).count(),
             "emissive materials with a base colour",
             "emitters reflect nothing here",
         ),
@@ -57,7 +59,11 @@ pub(super) fn unused(document: &Document) -> Vec<String> {
             "not used",
         ),
         (primitives().filter(|p| p.attributes.colour.is_some()).count(), "primitives with vertex colours", "not used"),
-        (primitives().filter(|p| p.targets.is_some()).count(), "primitives with morph targets", "shown without them"),
+        (
+            primitives().filter(|p| !p.targets.is_empty()).count(),
+            "primitives with morph targets",
+            "shown at the weights that the file gives, not those of animations",
+        ),
         (
             primitives().filter(|p| p.attributes.joints.is_some()).count().max(document.skins.len()),
             "skins",
@@ -80,12 +86,28 @@ pub(super) fn unused(document: &Document) -> Vec<String> {
         .filter(|(count, ..)| *count > 0)
         .map(|(count, what, consequence)| format!("{what}: {count}; {consequence}"))
         .collect();
-    let others: Vec<&String> =
-        document.extensions_used.iter().filter(|used| !EXTENSIONS.contains(&used.as_str())).collect();
-    if !others.is_empty() {
-        let names: Vec<String> = others.iter().take(MOST_NAMES).filter_map(|used| name::made_fit(used)).collect();
-        let more = if others.len() > MOST_NAMES { ", ..." } else { "" };
-        notes.push(format!("extensions that are not used: {}{more}", names.join(", ")));
+    let narrow = document.extensions.punctual.lights.iter().filter(|l| l.kind == "spot" && is_narrow(l.spot.as_ref()));
+    let narrow = narrow.count();
+    if narrow > 0 {
+        notes.push(format!(
+            "spots narrower than {NARROWEST_CONE} degrees: {narrow}; widened to that with their flux kept"
+        ));
     }
+    notes.extend(extensions::unread(document));
     notes
+}
+
+/// What Blender's exporter is called, whatever its version.
+const BLENDER: &str = "Khronos glTF Blender I/O";
+
+/// What should be said of the lamps of a file that Blender's own exporter wrote, unless someone has divided them.
+pub(super) fn blender(document: &Document, divided: bool) -> Option<String> {
+    let by_blender = document.asset.generator.as_deref().is_some_and(|generator| generator.starts_with(BLENDER));
+    let lamps = document.extensions.punctual.lights.len();
+    (by_blender && lamps > 0 && !divided).then(|| {
+        format!(
+            "lamps that Blender's exporter wrote: {lamps}; unless its lighting mode was `Unitless`, each is 683 times as \
+             bright beside emissive materials as in Blender: `--lamps-divided-by 683` mends that"
+        )
+    })
 }

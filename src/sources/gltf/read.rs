@@ -1,17 +1,19 @@
 //! From the bytes of a glTF file to a scene.
 
 use super::extras::{self, SceneExtras};
+use super::glow::Part;
 use super::groups::Groups;
 use super::material::{Cover, Palette};
 use super::nodes::Placed;
 use super::notes;
 use super::reader::Reader;
 use super::source::Source;
+use crate::base::colour::luminance;
 use crate::base::error::{Error, Result};
 use crate::scene::light::Shape;
 use crate::scene::{Parts, Scene, Surface};
 use crate::sources::overrides::Overrides;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::path::Path;
 
 /// Exposure values beyond this, up or down, overflow f32 on the way to a pixel.
@@ -40,33 +42,85 @@ pub fn parse(bytes: &[u8], file: &Path, overrides: &Overrides) -> Result<Scene> 
             source.wrong("city", "is missing; a generated city, whose number of lights is to be changed, is asked for")
         );
     }
-    let (json, chunk) = source.split(bytes)?;
-    let document = source.document(json)?;
-    let buffers = source.buffers(&document, chunk)?;
-    Reader { source, document: &document, buffers: &buffers }.read(overrides)
+    let divided_by = overrides.lamps_divided_by.unwrap_or(1.0);
+    if !(divided_by > 0.0 && divided_by.is_finite()) {
+        let text = format_args!("lamps are to be divided by {divided_by}; a number above 0 is asked for");
+        return Err(source.wrong("extensions.KHR_lights_punctual", text));
+    }
+    let container = source.split(bytes)?;
+    let document = source.document(container.json)?;
+    // Before any buffer is read: some extensions say where those lie.
+    Reader { source, document: &document, buffers: &[] }.check()?;
+    let buffers = source.buffers(&document, container.chunk)?;
+    let mut notes = Vec::new();
+    if container.after > 0 {
+        notes.push(format!("bytes after the end that the file announces: {}; not read", container.after));
+    }
+    Reader { source, document: &document, buffers: &buffers }.read(overrides, notes)
+}
+
+/// What became of the triangles of textured emitters.
+#[derive(Default)]
+struct Tally {
+    shining: usize,
+    dark: usize,
+    /// Radiance times area, by what shines and by what is dark.
+    light: f64,
+    lost: f64,
+}
+
+impl Tally {
+    fn add(&mut self, part: &Part) {
+        let [a, b, c] = part.corners;
+        let light = f64::from(luminance(part.radiance) * (b - a).cross(c - a).length());
+        let (count, sum) =
+            if part.dark { (&mut self.dark, &mut self.lost) } else { (&mut self.shining, &mut self.light) };
+        *count += 1;
+        *sum += light;
+    }
+
+    fn note(&self) -> Option<String> {
+        let Self { shining, dark, light, lost } = self;
+        let share = if *lost > 0.0 { 100.0 * lost / (light + lost) } else { 0.0 };
+        (shining + dark > 0).then(|| {
+            format!(
+                "emissive textures: their triangles shine in {shining} pieces, each with its mean; {dark} dark pieces \
+                 reflect instead ({share:.2} % of the light)"
+            )
+        })
+    }
 }
 
 impl Reader<'_> {
-    fn read(&self, overrides: &Overrides) -> Result<Scene> {
-        self.check_asset()?;
-        let palette = Palette::read(self)?;
-        let placed = self.placed()?;
+    fn read(&self, overrides: &Overrides, mut notes: Vec<String>) -> Result<Scene> {
+        self.check_sparse()?;
+        let placed = self.placed(&mut notes)?;
         self.check_size(&placed)?;
+        let palette = Palette::read(self, &placed, &mut notes)?;
         let bounds = self.bounds(&placed, &palette)?;
         // f32 has 0.1 mm at 1 km.
         let origin = (0.5 * (bounds[0] + bounds[1]) / 1000.0).round() * 1000.0;
+        let divided_by = f64::from(overrides.lamps_divided_by.unwrap_or(1.0));
         let mut groups = Groups::default();
         let mut surfaces = Vec::new();
+        let mut tally = Tally::default();
         for node in &placed {
             let name = self.document.nodes[node.id as usize].name.as_deref();
-            if let Some(light) = self.punctual(node, origin)? {
+            if let Some(light) = self.punctual(node, origin, divided_by)? {
                 groups.add(name, light);
             }
-            self.triangles(node, origin, &palette, &mut surfaces, &mut |light| groups.add(name, light))?;
+            self.triangles(node, origin, &palette, &mut surfaces, &mut tally, &mut |light| groups.add(name, light))?;
         }
-        let mut notes = notes::unused(self.document);
-        let camera = self.camera(&placed, origin, bounds, overrides, &mut notes)?;
+        notes.extend(tally.note());
+        notes.extend(notes::unused(self.document));
+        notes.extend(notes::blender(self.document, overrides.lamps_divided_by.is_some()));
+        let (camera, planes) = self.camera(&placed, origin, bounds, overrides, &mut notes)?;
         let (lights, groups) = groups.finish();
+        let emitters = lights.iter().filter_map(|light| match light {
+            Shape::Triangle { corners, .. } => Some(*corners),
+            _ => None,
+        });
+        notes.extend(planes.note(&camera, surfaces.iter().map(|surface| surface.corners).chain(emitters)));
         let scene = self.scene()?.1;
         let ev100 = extras::read::<SceneExtras>(scene.extras).and_then(|extras| extras.ev100);
         let ev100 = ev100.filter(|ev| ev.abs() <= MOST_EV100).map(|ev| ev as f32);
@@ -88,11 +142,11 @@ impl Reader<'_> {
         })
     }
 
-    /// The corners of the box around all reflecting triangles, in the world.
+    /// The corners of the box around all triangles that reflect, or do where they are dark, in the world.
     fn bounds(&self, placed: &[Placed], palette: &Palette) -> Result<[DVec3; 2]> {
         let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         self.pieces(placed, &mut |piece| {
-            let reflects = matches!(piece.cover(palette)?, Cover::Reflector(_));
+            let reflects = !matches!(palette.cover(self, piece)?, Cover::Emitter { .. });
             for corners in piece.triangles() {
                 let corners = corners?;
                 if reflects {
@@ -111,19 +165,40 @@ impl Reader<'_> {
         origin: DVec3,
         palette: &Palette,
         surfaces: &mut Vec<Surface>,
+        tally: &mut Tally,
         emit: &mut dyn FnMut(Shape),
     ) -> Result<()> {
+        let mut emit = |corners: [Vec3; 3], radiance: Vec3, double_sided: bool| {
+            emit(Shape::Triangle { corners, radiance });
+            if double_sided {
+                let [a, b, c] = corners;
+                emit(Shape::Triangle { corners: [a, c, b], radiance });
+            }
+        };
+        let mut parts = Vec::new();
         self.pieces(std::slice::from_ref(node), &mut |piece| {
-            let cover = piece.cover(palette)?;
-            for corners in piece.triangles_from(origin) {
-                let corners = corners?;
-                match cover {
-                    Cover::Reflector(material) => surfaces.push(Surface { corners, material }),
-                    Cover::Emitter { radiance, double_sided } => {
-                        emit(Shape::Triangle { corners, radiance });
-                        if double_sided {
-                            let [a, b, c] = corners;
-                            emit(Shape::Triangle { corners: [a, c, b], radiance });
+            match palette.cover(self, piece)? {
+                Cover::Reflector(material) => {
+                    for corners in piece.triangles_from(origin) {
+                        surfaces.push(Surface { corners: corners?, material });
+                    }
+                }
+                Cover::Emitter { radiance, double_sided } => {
+                    for corners in piece.triangles_from(origin) {
+                        emit(corners?, radiance, double_sided);
+                    }
+                }
+                Cover::Glowing { glow, dark, double_sided } => {
+                    let glow = &palette.glows.all[glow];
+                    for (corners, places) in piece.triangles_from(origin).zip(piece.places(&glow.mapping)?) {
+                        palette.glows.cut(glow, corners?, places?, &mut parts);
+                        for part in parts.drain(..) {
+                            tally.add(&part);
+                            if part.dark {
+                                surfaces.push(Surface { corners: part.corners, material: dark });
+                            } else {
+                                emit(part.corners, part.radiance, double_sided);
+                            }
                         }
                     }
                 }
@@ -132,7 +207,7 @@ impl Reader<'_> {
         })
     }
 
-    fn check_asset(&self) -> Result<()> {
+    fn check(&self) -> Result<()> {
         let asset = &self.document.asset;
         for (field, version) in [("version", Some(&asset.version)), ("minVersion", asset.min_version.as_ref())] {
             if let Some(version) = version.filter(|version| version.split('.').next() != Some("2")) {
@@ -141,17 +216,6 @@ impl Reader<'_> {
                 return Err(self.wrong(format_args!("asset.{field}"), text));
             }
         }
-        let required = self.document.extensions_required.iter().enumerate();
-        if let Some((i, name)) = required.into_iter().find(|(_, name)| !notes::EXTENSIONS.contains(&name.as_str())) {
-            let (shown, known): (String, _) = (name.chars().take(60).collect(), notes::EXTENSIONS.join(", "));
-            let text = format_args!("\"{shown}\" is not read here; known are {known}");
-            return Err(self.wrong(format_args!("extensionsRequired[{i}]"), text));
-        }
-        let used = self.document.extensions_used.iter().enumerate();
-        if let Some((i, name)) = used.into_iter().find(|(_, name)| notes::CHANGE_THE_LIGHT.contains(&name.as_str())) {
-            let text = format_args!("{name} is not read here, and without it the light would be another; remove it");
-            return Err(self.wrong(format_args!("extensionsUsed[{i}]"), text));
-        }
-        Ok(())
+        self.check_extensions()
     }
 }

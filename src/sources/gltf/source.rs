@@ -5,7 +5,9 @@
 use super::document::Document;
 use crate::base::error::{Error, Result};
 use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use base64::alphabet;
+use base64::engine::DecodePaddingMode;
+use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::fs::File;
@@ -17,9 +19,28 @@ const LARGEST_FILE: u64 = 2 << 30;
 /// Most bytes of a document: 256 MiB hold about two million nodes.
 const LARGEST_DOCUMENT: usize = 256 << 20;
 
+/// Base64 with or without padding at its end.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+/// What some editors put before a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 const MAGIC: &[u8; 4] = b"glTF";
 const JSON: u32 = u32::from_le_bytes(*b"JSON");
 const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+
+/// What a file is made of.
+pub(super) struct Container<'b> {
+    pub(super) json: &'b [u8],
+    /// The binary chunk of a `.glb` that has one.
+    pub(super) chunk: Option<&'b [u8]>,
+    /// Bytes after the end of a `.glb`.
+    pub(super) after: usize,
+}
 
 /// The name of the file that is read, for errors.
 #[derive(Clone, Copy)]
@@ -46,10 +67,10 @@ impl Source<'_> {
     }
 
     /// The JSON of a file, and the binary chunk if it has one.
-    pub(super) fn split<'b>(&self, bytes: &'b [u8]) -> Result<(&'b [u8], Option<&'b [u8]>)> {
+    pub(super) fn split<'b>(&self, bytes: &'b [u8]) -> Result<Container<'b>> {
         let is_glb = self.0.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("glb"));
         if !is_glb && !bytes.starts_with(MAGIC) {
-            return Ok((bytes, None));
+            return Ok(Container { json: bytes, chunk: None, after: 0 });
         }
         let (header, mut rest) = bytes.split_at_checked(12).ok_or_else(|| {
             self.wrong("header", format_args!("the file has {} bytes; a .glb begins with 12 of header", bytes.len()))
@@ -62,23 +83,26 @@ impl Source<'_> {
         if version != 2 {
             return Err(self.wrong("header.version", format_args!("{version} is given; version 2 is read here")));
         }
-        if length as usize != bytes.len() {
+        let Some((within, after)) = (length as usize).checked_sub(12).and_then(|length| rest.split_at_checked(length))
+        else {
             let found = bytes.len();
             return Err(self.wrong(
                 "header.length",
                 format_args!("{length} bytes are announced and {found} are there: the file is broken off or patched"),
             ));
-        }
+        };
+        rest = within;
+        let after = after.len();
         let mut chunks = [None; 2];
         let mut at = 0;
         while !rest.is_empty() {
             let refuse = |message: &dyn Display| self.wrong(format_args!("chunks[{at}].length"), message);
-            let (head, after) =
+            let (head, left) =
                 rest.split_at_checked(8).ok_or_else(|| refuse(&"is missing: the file ends in a chunk's head"))?;
             let (length, kind) = (number(head), number(&head[4..]));
-            let (body, after) = after
+            let (body, following) = left
                 .split_at_checked(length as usize)
-                .ok_or_else(|| refuse(&format_args!("{length} bytes are announced and {} are left", after.len())))?;
+                .ok_or_else(|| refuse(&format_args!("{length} bytes are announced and {} are left", left.len())))?;
             match (at, kind) {
                 (0, JSON) => chunks[0] = Some(body),
                 (1, BIN) => chunks[1] = Some(body),
@@ -86,10 +110,10 @@ impl Source<'_> {
                 // The specification has readers skip chunks that they do not know.
                 _ => {}
             }
-            (rest, at) = (after, at + 1);
+            (rest, at) = (following, at + 1);
         }
         let json = chunks[0].ok_or_else(|| self.wrong("chunks[0]", "is missing: a .glb holds a chunk of JSON"))?;
-        Ok((json, chunks[1]))
+        Ok(Container { json, chunk: chunks[1], after })
     }
 
     /// The document that JSON spells.
@@ -97,6 +121,7 @@ impl Source<'_> {
         if json.len() > LARGEST_DOCUMENT {
             return Err(self.wrong("", format_args!("the JSON is larger than {LARGEST_DOCUMENT} bytes, the most")));
         }
+        let json = json.strip_prefix(BYTE_ORDER_MARK).unwrap_or(json);
         if json.trim_ascii().is_empty() {
             return Err(self.wrong("", "the file is empty; a glTF document has at least an `asset` and a `scenes`"));
         }
@@ -132,7 +157,7 @@ impl Source<'_> {
                 ));
             }
             let bytes = match (&buffer.uri, chunk) {
-                (Some(uri), _) => Cow::Owned(self.fetch(i, uri, length)?),
+                (Some(uri), _) => Cow::Owned(self.fetch(&format_args!("buffers[{i}].uri"), uri, length)?),
                 (None, Some(chunk)) if i == 0 => Cow::Borrowed(chunk),
                 (None, _) => {
                     let text = "is missing; the name of a file beside this one or data in base64 is asked for";
@@ -151,25 +176,33 @@ impl Source<'_> {
         document.buffers.iter().enumerate().map(buffer).collect()
     }
 
-    /// At most `length` bytes that a URI names.
-    fn fetch(&self, i: usize, uri: &str, length: u64) -> Result<Vec<u8>> {
-        let refuse = |message: &dyn Display| self.wrong(format_args!("buffers[{i}].uri"), message);
+    /// At most `length` bytes that a URI names, which the document gives at `field`; all of them where it holds them.
+    pub(super) fn fetch(&self, field: &dyn Display, uri: &str, length: u64) -> Result<Vec<u8>> {
+        let refuse = |message: &dyn Display| self.wrong(field, message);
         if let Some(data) = uri.strip_prefix("data:") {
             let (_, data) = data
                 .split_once(";base64,")
                 .ok_or_else(|| refuse(&"this data is not in base64, the one way that is read here"))?;
-            return STANDARD.decode(data).map_err(|error| refuse(&format_args!("this is no base64: {error}")));
+            return BASE64.decode(data).map_err(|error| refuse(&format_args!("this is no base64: {error}")));
         }
+        let shown = || uri.chars().take(80).collect::<String>();
         let path = beside(uri).ok_or_else(|| {
-            let shown: String = uri.chars().take(80).collect();
             refuse(&format_args!(
-                "\"{shown}\" is given; the name of a file in the scene's folder is asked for, without a scheme, `..` \
-                 or a leading slash"
+                "\"{}\" is given; the name of a file in the scene's folder is asked for, without a scheme, `..` \
+                 or a leading slash",
+                shown()
             ))
         })?;
-        let path = self.0.parent().unwrap_or(Path::new("")).join(path);
+        let folder = self.0.parent().unwrap_or(Path::new(""));
+        let path = folder.join(path);
         if !path.is_file() {
             return Err(refuse(&format_args!("there is no file {}", path.display())));
+        }
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let [inside, whole] = [folder, &path].map(|path| path.canonicalize().map_err(Error::io("read", path)));
+        if !whole?.starts_with(inside?) {
+            let text = "is given, a link out of the scene's folder; copy the file there";
+            return Err(refuse(&format_args!("\"{}\" {text}", shown())));
         }
         read(&path, length)
     }

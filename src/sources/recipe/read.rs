@@ -65,6 +65,10 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     if overrides.camera.is_some() {
         return Err(source.error(None, "camera", "a recipe has one camera: none can be chosen by name"));
     }
+    if overrides.lamps_divided_by.is_some() {
+        let text = "a recipe's lamps are as bright as it says: only those of a glTF file can be divided";
+        return Err(source.error(None, "light", text));
+    }
     let document = source.document()?;
     let top = Table::top(&source, &document);
     top.only(&TOP)?;
