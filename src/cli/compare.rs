@@ -105,6 +105,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
             ));
         }
         let Some(mut session) = Session::open(arguments, record, &scenes)? else { return Ok(Outcome::Done) };
+        progress.last_words(&kept(&session.folder));
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
@@ -184,8 +185,7 @@ impl Session {
         let file = file.display().to_string();
         let resumable = |error: &Error| {
             if matches!(error, Error::Interrupted) {
-                let folder = self.folder.path().display();
-                say(&format!("finished rows are in {folder}; the same command with --out {folder} goes on from there"));
+                say(&kept(&self.folder));
             }
         };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
@@ -245,6 +245,12 @@ impl Session {
         write_run(folder, &self.record)?;
         self.films.remove()
     }
+}
+
+/// Where finished rows are, and how to go on.
+fn kept(folder: &ResultFolder) -> String {
+    let folder = folder.path().display();
+    format!("finished rows are in {folder}; the same command with --out {folder} goes on from there")
 }
 
 /// Shows a finished comparison.

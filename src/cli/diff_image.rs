@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use super::output::check_output;
 use super::terminal::{print, say};
-use super::values::{finite, positive};
+use super::values::{exposure, finite};
 use crate::base::colour;
 use crate::base::error::Error;
 use crate::image::flip::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, Pooled};
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Factor from the pictures' values to displayed ones, for FLIP; 1 by default
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = exposure)]
     exposure: Option<f32>,
     /// Exposure value at ISO 100, instead of a factor: it is 1 / (1.2 * 2^X)
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]

@@ -1,16 +1,68 @@
 //! What is said to the user?
+//!
+//! All that is said goes through here: text of files, whatever they are, moves no cursor and turns no colour on.
 
-use std::io::Write;
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::io::{IsTerminal, Write};
 
 /// Tells the user something on stderr; one that has been closed is no error.
 pub(super) fn say(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", plain(text));
 }
 
 /// Prints to stdout; a reader that has gone away (`| head`) is no error.
 pub(super) fn print(text: &str) -> anyhow::Result<()> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
+    match std::io::stdout().lock().write_all(plain(text).as_bytes()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(e.into()),
         _ => Ok(()),
+    }
+}
+
+/// Columns of the terminal that stdout is; `None` where it is none.
+pub(super) fn width() -> Option<usize> {
+    let stdout = std::io::stdout();
+    let (terminal_size::Width(columns), _) =
+        terminal_size::terminal_size_of(&stdout).filter(|_| stdout.is_terminal())?;
+    // A terminal that does not know says 0.
+    Some(usize::from(columns)).filter(|&columns| columns > 0)
+}
+
+/// The text with what would command a terminal, or turn the direction of letters, written out: `\u001b`, as JSON has
+/// it. Line breaks and tabs stay.
+pub(super) fn plain(text: &str) -> Cow<'_, str> {
+    let commands = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let unfit = |c: char| commands(c) || turns(c);
+    if !text.contains(unfit) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if unfit(c) {
+            _ = write!(plain, "\\u{:04x}", u32::from(c));
+        } else {
+            plain.push(c);
+        }
+    }
+    Cow::Owned(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whatever_commands_a_terminal_is_written_out() {
+        for code in (0..0x20).chain(0x7f..0xa0).chain([0x200e, 0x200f, 0x2028, 0x202e, 0x2066]) {
+            let c = char::from_u32(code).expect("a character");
+            let expected = if c == '\n' || c == '\t' { format!("a{c}b") } else { format!("a\\u{code:04x}b") };
+            assert_eq!(plain(&format!("a{c}b")), expected);
+        }
+        let kept = "Zürich 100 % ± 5, b² ▲ 夜\n\ttwo";
+        assert!(matches!(plain(kept), Cow::Borrowed(text) if text == kept));
+        // JSON stays JSON.
+        let json = plain("\"\u{7f}\u{9b}\"").into_owned();
+        assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), "\u{7f}\u{9b}");
     }
 }
