@@ -5,7 +5,7 @@ use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
 use super::scene::SceneOptions;
-use super::terminal::{print, say};
+use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::seconds;
 use crate::base::error::{Error, Result};
@@ -216,7 +216,7 @@ impl Session {
         // This scene is finished, even where others are still to come.
         let record = RunRecord { finished: true, ..self.record.clone() };
         if let Some(scene) = record.scenes.last() {
-            print(&format!("{}\n", table(&record, scene, &rows)))?;
+            print(&format!("{}\n", table(&record, scene, &rows, width())))?;
         }
         Ok(())
     }
@@ -256,7 +256,7 @@ fn kept(folder: &ResultFolder) -> String {
 /// Shows a finished comparison.
 fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
     let rows = store::read_rows(folder)?.rows;
-    record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows))))?;
+    record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows, width()))))?;
     let (folder, date) = (folder.display(), &record.date);
     say(&format!(
         "{folder} holds this comparison, finished ({date}); results are never overwritten: nothing was measured"

@@ -2,12 +2,12 @@
 
 use super::outcome::Outcome;
 use super::scene::SceneOptions;
-use super::terminal::print;
+use super::terminal::{print, width};
 use super::threads::{pool, threads};
 use super::waiting::while_long;
 use crate::inspect::{Inspection, Part, inspect};
 use clap::Args;
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -98,6 +98,8 @@ fn parts(head: &str, parts: &[Part]) -> Table {
         "flux klm",
         "share of flux",
     ]);
+    // Long names fold where the terminal is narrow.
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width() as u16);
     for part in parts {
         table.add_row([
             part.name.clone(),

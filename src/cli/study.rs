@@ -4,7 +4,7 @@ use super::folders::{CACHE, RESULTS};
 use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
-use super::terminal::{print, say};
+use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::{resolution, seconds};
 use crate::base::error::Error;
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
                     say(&kept(path.display()));
                 }
             })?;
-            print(&format!("{}\n", report::study_text(&finished)))?;
+            print(&format!("{}\n", report::study_text(&finished, width())))?;
             say(&format!("study {}: {:.0} s", study.name, finished.record.wall_s));
         }
         Ok(Outcome::Done)

@@ -2,6 +2,7 @@
 //!
 //! All that is said goes through here: text of files, whatever they are, moves no cursor and turns no colour on.
 
+use crate::report::USUAL_COLUMNS;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
@@ -19,14 +20,17 @@ pub(super) fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Columns of the terminal that stdout is; `None` where it is none.
-pub(super) fn width() -> Option<usize> {
+/// Columns that a table may have: those of the terminal that stdout is, if there are fewer than usual.
+pub(super) fn width() -> usize {
     let stdout = std::io::stdout();
-    let (terminal_size::Width(columns), _) =
-        terminal_size::terminal_size_of(&stdout).filter(|_| stdout.is_terminal())?;
+    let size = terminal_size::terminal_size_of(&stdout).filter(|_| stdout.is_terminal());
+    let columns = size.map_or(USUAL_COLUMNS, |(terminal_size::Width(columns), _)| usize::from(columns));
     // A terminal that does not know says 0.
-    Some(usize::from(columns)).filter(|&columns| columns > 0)
+    if columns == 0 { USUAL_COLUMNS } else { columns.clamp(NARROWEST, USUAL_COLUMNS) }
 }
+
+/// Fewer columns hold no table.
+const NARROWEST: usize = 20;
 
 /// The text with what would command a terminal, or turn the direction of letters, written out: `\u001b`, as JSON has
 /// it. Line breaks and tabs stay.
