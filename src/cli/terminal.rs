@@ -2,7 +2,7 @@
 //!
 //! All that is said goes through here: text of files, whatever they are, moves no cursor and turns no colour on.
 
-use crate::report::USUAL_COLUMNS;
+use crate::report::{USUAL_COLUMNS, broken};
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
@@ -27,6 +27,30 @@ pub(super) fn width() -> usize {
     let columns = size.map_or(USUAL_COLUMNS, |(terminal_size::Width(columns), _)| usize::from(columns));
     // A terminal that does not know says 0.
     if columns == 0 { USUAL_COLUMNS } else { columns.clamp(NARROWEST, USUAL_COLUMNS) }
+}
+
+/// A line of parts; those that the terminal has no room for go on below, further in, and words of a part that is wider
+/// than that below one another.
+pub(super) fn side_by_side(parts: &[String]) -> String {
+    within(parts, width())
+}
+
+/// The same in so many columns.
+fn within(parts: &[String], width: usize) -> String {
+    const INDENT: &str = "      ";
+    let columns = |text: &str| text.trim_end().chars().count();
+    let mut lines: Vec<String> = Vec::new();
+    for part in parts {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + columns(part) <= width => {
+                line.push(' ');
+                line.push_str(part);
+            }
+            None if columns(part) <= width => lines.push(part.to_owned()),
+            _ => lines.extend(broken(part.trim(), width - INDENT.len()).iter().map(|l| format!("{INDENT}{l}"))),
+        }
+    }
+    lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
 /// Fewer columns hold no table.
@@ -55,6 +79,14 @@ pub(super) fn plain(text: &str) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_that_find_no_room_go_on_below() {
+        let parts = ["  name      1.0", "  2.0  ", "what it is, in words"].map(str::to_owned);
+        assert_eq!(within(&parts, 80), "  name      1.0   2.0 what it is, in words\n");
+        assert_eq!(within(&parts, 30), "  name      1.0   2.0\n      what it is, in words\n");
+        assert_eq!(within(&parts, 20), "  name      1.0\n      2.0\n      what it is,\n        in words\n");
+    }
 
     #[test]
     fn whatever_commands_a_terminal_is_written_out() {

@@ -6,6 +6,8 @@
 use std::io;
 use std::process::{Child, ChildStderr, ChildStdout, Command, ExitStatus};
 use std::sync::Mutex;
+#[cfg(feature = "cli")]
+use std::time::Duration;
 
 /// The leaders of all groups that run.
 static RUNNING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
@@ -74,11 +76,20 @@ impl Drop for Group {
 }
 
 /// Ends all groups: before the process ends itself, which drops nothing.
+#[cfg(feature = "cli")]
 pub(crate) fn end_all() {
-    if let Ok(running) = RUNNING.lock() {
-        running.iter().for_each(|&leader| end(leader));
+    for _ in 0..TRIES {
+        if let Ok(running) = RUNNING.try_lock() {
+            return running.iter().for_each(|&leader| end(leader));
+        }
+        // One is just being started or ended, which takes no time unless the system hangs.
+        std::thread::sleep(Duration::from_millis(10));
     }
 }
+
+/// How often it is tried to look at what runs.
+#[cfg(feature = "cli")]
+const TRIES: u32 = 100;
 
 #[cfg(unix)]
 fn pid(number: u32) -> Option<rustix::process::Pid> {
