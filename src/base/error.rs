@@ -1,5 +1,6 @@
 //! The library's one error type: what was tried, where, and what would be right.
 
+use super::names;
 use std::path::PathBuf;
 
 /// Everything that can go wrong because of what a user gave or where it runs.
@@ -19,14 +20,16 @@ pub enum Error {
         message: String,
     },
     /// A name that nothing bears.
-    #[error("unknown {what} `{name}`{}", hint(.near))]
+    #[error("unknown {what} `{name}`{}", names::told(.near, .known))]
     Unknown {
         /// The kind of thing that was named: `strategy`, `scene`.
         what: &'static str,
         /// The name as given.
         name: String,
-        /// The names that come near, or all of them where they are few.
+        /// The names that come near, nearest first; empty where none does.
         near: Vec<String>,
+        /// All the names there are, which are told where none comes near.
+        known: Vec<String>,
     },
     /// A parameter outside its range or of the wrong type.
     #[error("{owner}: parameter `{name}` is `{value}`: {expected}")]
@@ -62,6 +65,17 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
+    /// An [`Error::Unknown`]: `name` is none of `known`.
+    pub(crate) fn unknown<'a>(
+        what: &'static str,
+        name: impl Into<String>,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        let (name, known): (String, Vec<&str>) = (name.into(), known.into_iter().collect());
+        let near = names::near(&name, known.iter().copied());
+        Self::Unknown { what, name, near, known: known.into_iter().map(str::to_owned).collect() }
+    }
+
     /// An [`Error::Io`] for `path`, to be used with `map_err`.
     pub(crate) fn io(doing: &'static str, path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();
@@ -75,8 +89,4 @@ fn line_suffix(line: Option<usize>) -> String {
 
 fn field_prefix(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!("`{field}`: ") }
-}
-
-fn hint(near: &[String]) -> String {
-    if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) }
 }

@@ -2,6 +2,7 @@
 
 use crate::base::error::{Error, Result};
 use std::fs::{self, File};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -64,7 +65,20 @@ fn partial(path: &Path) -> Result<PathBuf> {
         return Err(Error::Invalid(format!("cannot write `{}`: it names no file", path.display())));
     };
     // The process number keeps two runs that write the same file apart.
-    Ok(path.with_file_name(format!(".{}.{}{PARTIAL}", name.to_string_lossy(), std::process::id())))
+    Ok(path.with_file_name(format!(".{}.{}{PARTIAL}", short(&name.to_string_lossy()), std::process::id())))
+}
+
+/// Longest part of a file's name that the hidden file bears, in bytes: systems take 255, and more is added.
+const LONGEST: usize = 200;
+
+/// The name, or of a long one its beginning and a hash of all of it.
+fn short(name: &str) -> String {
+    if name.len() <= LONGEST {
+        return name.to_owned();
+    }
+    let mut hasher = DefaultHasher::new();
+    name.hash(&mut hasher);
+    format!("{}-{:016x}", &name[..name.floor_char_boundary(LONGEST - 17)], hasher.finish())
 }
 
 /// Removes what runs that died half-way through [`write_whole`] left in a folder that nobody else writes in.
@@ -91,6 +105,19 @@ fn is_partial(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_may_have_the_longest_name_that_there_is() {
+        let folder = tempfile::tempdir().expect("a folder");
+        // 127 letters of two bytes each, and one of one.
+        let names = ["a", "b"].map(|end| folder.path().join(format!("{}{end}", "\u{e9}".repeat(127))));
+        write_together(&names.clone().map(|path| (path, b"text"))).expect("written");
+        assert!(names.iter().all(|path| path.file_name().is_some_and(|name| name.len() == 255) && path.exists()));
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 2);
+        fs::write(partial(&names[0]).expect("a name"), "half").expect("written");
+        remove_partials(folder.path()).expect("removed");
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 2);
+    }
 
     #[test]
     fn only_its_own_partial_files_are_removed() {

@@ -5,7 +5,7 @@ use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
 use super::scene::SceneOptions;
-use super::terminal::{print, say};
+use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::seconds;
 use crate::base::error::{Error, Result};
@@ -105,6 +105,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
             ));
         }
         let Some(mut session) = Session::open(arguments, record, &scenes)? else { return Ok(Outcome::Done) };
+        progress.last_words(&kept(&session.folder));
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
             let stage = arguments.scene_options.prepare(scene);
@@ -186,8 +187,7 @@ impl Session {
         let file = file.display().to_string();
         let resumable = |error: &Error| {
             if matches!(error, Error::Interrupted) {
-                let folder = self.folder.path().display();
-                say(&format!("finished rows are in {folder}; the same command with --out {folder} goes on from there"));
+                say(&kept(&self.folder));
             }
         };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
@@ -220,7 +220,7 @@ impl Session {
         // This scene is finished, even where others are still to come.
         let record = RunRecord { finished: true, ..self.record.clone() };
         if let Some(scene) = record.scenes.last() {
-            print(&format!("{}\n", table(&record, scene, &rows)))?;
+            print(&format!("{}\n", table(&record, scene, &rows, width())))?;
         }
         Ok(())
     }
@@ -253,10 +253,16 @@ impl Session {
     }
 }
 
+/// Where finished rows are, and how to go on.
+fn kept(folder: &ResultFolder) -> String {
+    let folder = folder.path().display();
+    format!("finished rows are in {folder}; the same command with --out {folder} goes on from there")
+}
+
 /// Shows a finished comparison.
 fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
     let rows = store::read_rows(folder)?.rows;
-    record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows))))?;
+    record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows, width()))))?;
     let (folder, date) = (folder.display(), &record.date);
     say(&format!(
         "{folder} holds this comparison, finished ({date}); results are never overwritten: nothing was measured"

@@ -3,13 +3,13 @@
 use super::outcome::Outcome;
 use super::output::check_output;
 use super::terminal::{print, say};
-use super::values::{finite, positive};
+use super::values::{exposure, finite};
 use crate::base::colour;
 use crate::base::error::Error;
 use crate::image::flip::{MOST_PIXELS_PER_DEGREE, PIXELS_PER_DEGREE, Pooled};
 use crate::image::map::{Map, Scale};
 use crate::image::metrics::Pair;
-use crate::image::{self, Format};
+use crate::image::{self, Format, MOST_PIXELS};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::fmt::Write;
@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Factor from the pictures' values to displayed ones, for FLIP; 1 by default
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = exposure)]
     exposure: Option<f32>,
     /// Exposure value at ISO 100, instead of a factor: it is 1 / (1.2 * 2^X)
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]
@@ -52,6 +52,10 @@ pub(super) struct Arguments {
     /// Pixels per degree of the viewer's field, for FLIP; 0.7 m before a screen of 3,840 pixels on 0.7 m by default
     #[arg(long, value_name = "X", default_value_t = PIXELS_PER_DEGREE, value_parser = pixels_per_degree)]
     ppd: f64,
+    /// Most pixels of each picture, whatever its file's size; by default 8,388,608, or 64 a byte of a larger file.
+    /// The comparison takes about 150 bytes of memory a pixel
+    #[arg(long, value_name = "N", value_parser = most_pixels)]
+    max_pixels: Option<usize>,
     /// Exit code 1 if the mean of the metric is above this
     #[arg(long, value_name = "X", value_parser = limit)]
     fail_above: Option<f64>,
@@ -128,10 +132,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     }
     arguments.output.as_deref().map_or(Ok(()), check_output)?;
 
-    let reference = image::read(&arguments.reference)?;
-    let test = image::read(&arguments.test)?;
-    let mask = arguments.mask.as_deref().map(image::read).transpose()?;
+    let read = |path: &Path| image::read_within(path, arguments.max_pixels);
+    let reference = read(&arguments.reference)?;
+    let (width, height) = (reference.width, reference.height);
+    let test = read(&arguments.test)?;
+    let mask = arguments.mask.as_deref().map(read).transpose()?;
     let pair = Pair::new(&reference, &test, mask.as_ref())?;
+    // Of large pictures that is much.
+    drop((reference, test, mask));
     if pair.not_finite() > 0 {
         say(&format!("{} pixels are not finite and left out", pair.not_finite()));
     }
@@ -147,8 +155,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     let report = Report {
         reference: named(&arguments.reference),
         test: named(&arguments.test),
-        width: reference.width,
-        height: reference.height,
+        width,
+        height,
         pixels: pair.pixels(),
         masked: pair.masked(),
         not_finite: pair.not_finite(),
@@ -178,7 +186,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         (Metric::Mse, _) => pair.squared_errors(),
     };
     if let Some(output) = &arguments.output {
-        let (width, height) = (reference.width, reference.height);
         Map { width, height, values: &map, counted: pair.counted(), scale: scale(metric, &map) }.write(output)?;
     }
     let failed = arguments.fail_above.is_some_and(|limit| pair.pooled(&map).mean > limit);
@@ -241,6 +248,14 @@ fn pixels_per_degree(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|x| right.contains(x))
         .ok_or_else(|| format!("a number from 1 to {} is right", right.end()))
+}
+
+fn most_pixels(text: &str) -> Result<usize, String> {
+    let right = 1..=MOST_PIXELS;
+    text.parse()
+        .ok()
+        .filter(|n| right.contains(n))
+        .ok_or_else(|| format!("a whole number from 1 to {MOST_PIXELS} is right"))
 }
 
 fn limit(text: &str) -> Result<f64, String> {

@@ -3,9 +3,10 @@
 use super::home::Home;
 use super::outcome::Outcome;
 use super::scene::SceneOptions;
-use super::terminal::print;
+use super::terminal::{print, side_by_side};
 use super::threads::{pool, threads};
 use super::values::pixel;
+use super::waiting::while_long;
 use crate::explain::{Explained, Explanation, Fate, Share, explain};
 use crate::report::{grouped, short};
 use crate::scene::Scene;
@@ -47,7 +48,8 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     let Arguments { pixel: (x, y), passes, seed, .. } = *arguments;
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;
-        let found = explain(&stage, &strategy, [x, y], passes, seed)?;
+        let what = format!("{}: {} being explained", stage.scene().name(), strategy.name());
+        let found = while_long(&what, || explain(&stage, &strategy, [x, y], passes, seed))?;
         let at = &found.at;
         print(&format!(
             "{} at pixel {x},{y}: position {:.3} m, normal {:.3}, albedo {:.3}\nexact luminance {} cd/m^2, mean of these passes {}\n",
@@ -74,12 +76,8 @@ fn picks(scene: &Scene, found: &Explanation) -> String {
             let point = point.map_or_else(String::new, |point| format!(", point {point:.3}"));
             let told = expected.map_or_else(|| "cannot be told".to_owned(), |count| short(f64::from(count)));
             _ = writeln!(text, "  {}{point}", name(scene, *light));
-            _ = writeln!(
-                text,
-                "    weight {}; expected picks of it in a pass: {told}; {}",
-                short(f64::from(*weight)),
-                became(scene, *adds, *fate)
-            );
+            let weight = format!("    weight {}; expected picks of it in a pass: {told};", short(f64::from(*weight)));
+            text.push_str(&side_by_side(&[weight, became(scene, *adds, *fate)]));
         }
     }
     text
@@ -122,7 +120,8 @@ fn shares(scene: &Scene, found: &Explanation, most: usize) -> String {
             None => ("–".to_owned(), "–".to_owned()),
         };
         let percent = format!("{:.2} %", 100.0 * share);
-        _ = writeln!(text, "  {:>12} {percent:>8} {count:>12} {over:>10}  {}", short(*adds), name(scene, *light));
+        let figures = format!("  {:>12} {percent:>8} {count:>12} {over:>10}", short(*adds));
+        text.push_str(&side_by_side(&[figures, name(scene, *light)]));
     }
     if let Some(rest) = found.shares.get(most..).filter(|rest| !rest.is_empty()) {
         let sum: f64 = rest.iter().map(|share| share.exact).sum();

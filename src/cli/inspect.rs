@@ -2,12 +2,12 @@
 
 use super::outcome::Outcome;
 use super::scene::SceneOptions;
-use super::terminal::print;
+use super::terminal::{print, width};
 use super::threads::{pool, threads};
+use super::waiting::while_long;
 use crate::inspect::{Inspection, Part, inspect};
 use clap::Args;
-
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -28,7 +28,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;
-        let inspection = inspect(&stage);
+        let what = format!("{}: being inspected", stage.scene().name());
+        let inspection = while_long(&what, || inspect(&stage));
         if arguments.json {
             print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
         } else {
@@ -97,6 +98,8 @@ fn parts(head: &str, parts: &[Part]) -> Table {
         "flux klm",
         "share of flux",
     ]);
+    // Long names fold where the terminal is narrow.
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width() as u16);
     for part in parts {
         table.add_row([
             part.name.clone(),

@@ -6,6 +6,7 @@ use super::output::check_folder;
 use super::terminal::{print, say};
 use super::threads::{pool, threads};
 use super::values::{pixel, resolution};
+use super::waiting::while_long;
 use crate::base::error::Error;
 use crate::base::file::write_whole;
 use crate::lecture::{Asked, CHAPTERS, find};
@@ -69,10 +70,13 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     };
     pool(arguments.threads)?.install(|| {
         let resolution = Some(arguments.resolution.unwrap_or(chapter.resolution));
-        let scene = sources::open(scene, &Overrides { resolution, ..Overrides::default() })?;
+        let overrides = Overrides { resolution, ..Overrides::default() };
+        let what = format!("{}: being read", scene.display());
+        let scene = while_long(&what, || sources::open(scene, &overrides))?;
         let pixel = arguments.pixel.map(|(x, y)| [x, y]);
         let asked = Asked { scene, pixel, seed: arguments.seed, registry: home.registry };
-        write_whole(&output, chapter.svg(&asked)?.as_bytes())?;
+        let drawn = while_long(&format!("chapter {}: being drawn", chapter.name), || chapter.svg(&asked))?;
+        write_whole(&output, drawn.as_bytes())?;
         say(&format!("{}", output.display()));
         Ok(Outcome::Done)
     })

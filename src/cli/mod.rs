@@ -11,6 +11,8 @@
 //! | what is said to the user? | `terminal` |
 //! | whose strategies are these, and what was typed? | `home` |
 //! | how far is it, and has it been interrupted? | `progress` |
+//! | what asks the program to stop? | `signals` |
+//! | is something said while a scene is read and prepared? | `waiting` |
 //! | which scene does it take, and how is that prepared? | `scene` |
 //! | which text of an option is right? | `values` |
 //! | how many threads does it run on? | `threads` |
@@ -35,11 +37,13 @@ mod render;
 mod report;
 mod run;
 mod scene;
+mod signals;
 mod stability;
 mod study;
 mod terminal;
 mod threads;
 mod values;
 mod verify;
+mod waiting;
 
 pub use run::run_with;

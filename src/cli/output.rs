@@ -6,6 +6,7 @@ use crate::image::{self, Format, Picture};
 use crate::render::picture::picture;
 use crate::visibility::stage::Stage;
 use glam::Vec3;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Refuses a picture that could not be written, before the work instead of after it.
@@ -26,6 +27,12 @@ pub(super) fn check_folder(file: &Path) -> Result<(), Error> {
             file.display(),
             folder.display()
         )));
+    }
+    // A name that no file can bear; that nothing bears it is well.
+    if let Err(error) = std::fs::symlink_metadata(file)
+        && error.kind() != ErrorKind::NotFound
+    {
+        return Err(Error::io("write", file)(error));
     }
     let probe = folder.join(format!(".citylights-{}", std::process::id()));
     std::fs::write(&probe, b"").and_then(|()| std::fs::remove_file(&probe)).map_err(Error::io("write", file))

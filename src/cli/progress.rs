@@ -1,30 +1,52 @@
-//! Progress on stderr, and Ctrl-C.
+//! Progress on stderr, and the wish to stop.
 
-use super::terminal::say;
+use super::signals;
+use super::terminal::{plain, say};
 use crate::measure::observer::Observer;
+use crate::peers;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, mpsc};
 use std::time::{Duration, Instant};
 
-/// Shows progress on stderr and stops long work on Ctrl-C: the first asks it to stop, a second ends the process.
+/// Shows progress on stderr and stops long work on Ctrl-C, TERM and HUP: the first asks it to stop. A second ends the
+/// process, and so does work that has not heard the first after [`PATIENCE`].
 pub(super) struct Progress {
     stopped: Arc<AtomicBool>,
+    /// What to say where the process is ended: how to go on.
+    last_words: Arc<Mutex<String>>,
     stage: Mutex<Shown>,
     scene: Mutex<String>,
 }
 
+/// The exit code of a program that was asked to stop.
+pub(super) const INTERRUPTED: u8 = 130;
+
+/// How long work may take to hear that it is to stop. What is finished is on disk by then: a process that is ended
+/// loses what a killed one does, no more.
+const PATIENCE: Duration = Duration::from_secs(3);
+
 impl Progress {
     pub(super) fn new() -> anyhow::Result<Self> {
-        let stopped = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stopped);
-        ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
+        let (stopped, last_words) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(String::new())));
+        let wishes = signals::wishes()?;
+        let (flag, words) = (Arc::clone(&stopped), Arc::clone(&last_words));
+        std::thread::spawn(move || {
+            if wishes.recv().is_ok() {
+                flag.store(true, Ordering::SeqCst);
+                say("\nstopping; what is finished is kept (once more to stop at once)");
+                end_after(&wishes, &words);
             }
-            say("\nstopping; what is finished is kept (once more to stop at once)");
-        })?;
-        Ok(Self { stopped, stage: Mutex::new(Shown::Bar(ProgressBar::hidden())), scene: Mutex::default() })
+        });
+        let stage = Mutex::new(Shown::Bar(ProgressBar::hidden()));
+        Ok(Self { stopped, last_words, stage, scene: Mutex::default() })
+    }
+
+    /// What is said last if the process must be ended: how to go on.
+    pub(super) fn last_words(&self, text: &str) {
+        if let Ok(mut words) = self.last_words.lock() {
+            text.clone_into(&mut words);
+        }
     }
 
     /// Names the scene in front of what follows.
@@ -52,7 +74,7 @@ impl Observer for Progress {
         }
         let style = ProgressStyle::with_template("{prefix:>24} {bar:40} {pos}/{len}  {elapsed} (about {eta} left)");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_prefix(what);
+        bar.set_prefix(plain(&what).into_owned());
         bar.enable_steady_tick(Duration::from_millis(200));
         self.with(|stage| *stage = Shown::Bar(bar));
     }
@@ -79,6 +101,17 @@ impl Observer for Progress {
     fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
+}
+
+/// Ends the process at a second wish to stop, or when the first has not been heard.
+fn end_after(wishes: &mpsc::Receiver<()>, last_words: &Mutex<String>) -> ! {
+    // Either way.
+    let _ = wishes.recv_timeout(PATIENCE);
+    peers::end_all();
+    if let Some(words) = last_words.lock().ok().filter(|words| !words.is_empty()) {
+        say(&words);
+    }
+    std::process::exit(INTERRUPTED.into())
 }
 
 /// How a stage is shown: on a terminal as a bar, else as lines.

@@ -7,6 +7,7 @@ use super::scene::SceneOptions;
 use super::terminal::print;
 use super::threads::{pool, threads};
 use super::values::pixel;
+use super::waiting::while_long;
 use crate::base::random::RunKey;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
@@ -48,14 +49,17 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     }
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage(&arguments.scene)?;
-        let sampler = strategy.build(BuildContext { stage: &stage, seed: arguments.seed })?;
+        let name = stage.scene().name();
+        let context = BuildContext { stage: &stage, seed: arguments.seed };
+        let sampler = while_long(&format!("{name}: {} being built", strategy.name()), || strategy.build(context))?;
         let key = RunKey { seed: arguments.seed, run: 0 };
         let plan = Plan { stage: &stage, receivers: stage.receivers(), sampler: sampler.as_ref(), key };
         if let Some((x, y)) = arguments.pixel {
             return one_pixel(&plan, x, y, arguments.spp);
         }
         let mut film = Film::new(stage.receivers().len());
-        plan.run_parallel(arguments.spp, &mut film);
+        let what = format!("{name}: being rendered, {} passes", arguments.spp);
+        while_long(&what, || plan.run_parallel(arguments.spp, &mut film));
         if let Some(output) = &arguments.output {
             save(&stage, &film.image(), output)?;
         }

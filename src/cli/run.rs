@@ -2,6 +2,7 @@
 
 use super::home::Home;
 use super::outcome::Outcome;
+use super::progress::INTERRUPTED;
 use super::terminal::say;
 use super::{
     compare, diff_image, explain, export, inspect, lecture, list, new_strategy, reference, render, report, stability,
@@ -89,7 +90,7 @@ pub fn run_with(registry: &Registry, program: &Program) -> ExitCode {
         Err(error) => {
             say(&format!("{}: {error}", program.name));
             let interrupted = matches!(error.downcast_ref::<Error>(), Some(Error::Interrupted));
-            ExitCode::from(if interrupted { 130 } else { 2 })
+            ExitCode::from(if interrupted { INTERRUPTED } else { 2 })
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Options that say which scene, and how it is prepared.
 
 use super::terminal::say;
-use super::values::{finite, positive, resolution};
+use super::values::{exposure, finite, resolution};
+use super::waiting::while_long;
 use crate::base::colour;
 use crate::base::error::Error;
 use crate::base::names;
+use crate::report::grouped;
 use crate::scene::Scene;
 use crate::scene::light_sampling::LightSampling;
 use crate::sources::{self, Overrides};
@@ -32,7 +34,7 @@ pub(super) struct SceneOptions {
     #[arg(long, value_name = "X", value_parser = finite, allow_negative_numbers = true, conflicts_with = "exposure")]
     ev100: Option<f32>,
     /// Factor from radiance to displayed value, instead of an exposure value
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = exposure)]
     exposure: Option<f32>,
     /// How shadow rays keep off their own surfaces: scaled, origin-push, t-min, ulps; none, which is wrong on purpose, shows why
     #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
@@ -49,17 +51,15 @@ impl SceneOptions {
     /// Loads a scene.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, Error> {
         let ev100 = self.exposure.map(colour::ev100).or(self.ev100);
-        let scene = sources::open(
-            path,
-            &Overrides {
-                seed: self.scene_seed,
-                resolution: self.resolution,
-                ev100,
-                lights: None,
-                camera: self.camera.clone(),
-                lamps_divided_by: self.lamps_divided_by,
-            },
-        )?;
+        let overrides = Overrides {
+            seed: self.scene_seed,
+            resolution: self.resolution,
+            ev100,
+            lights: None,
+            camera: self.camera.clone(),
+            lamps_divided_by: self.lamps_divided_by,
+        };
+        let scene = while_long(&format!("{}: being read", path.display()), || sources::open(path, &overrides))?;
         for note in scene.notes() {
             say(&format!("{}: {note}", scene.name()));
         }
@@ -110,7 +110,10 @@ impl SceneOptions {
 
     /// Makes a loaded scene ready.
     pub(super) fn prepare(&self, scene: Scene) -> Stage {
-        let stage = Stage::new(scene, self.leave_out, self.offset).with_light_sampling(self.light_sampling);
+        let (lights, surfaces) = (grouped(scene.lights().len() as u64), grouped(scene.surfaces().len() as u64));
+        let what = format!("{}: being prepared, {lights} lights and {surfaces} triangles", scene.name());
+        let stage = while_long(&what, || Stage::new(scene, self.leave_out, self.offset));
+        let stage = stage.with_light_sampling(self.light_sampling);
         if stage.receivers().is_empty() {
             say(&format!("{}: the camera sees no surface: nothing but sky and emitters", stage.scene().name()));
         }
@@ -120,20 +123,19 @@ impl SceneOptions {
 
 fn offset(text: &str) -> Result<Offset, String> {
     let known: Vec<&str> = Offset::all().map(|(name, _)| name).collect();
-    Offset::named(text).ok_or_else(|| {
-        format!(
-            "one of {} is right; near it: {}",
-            known.join(", "),
-            names::near(text, known.iter().copied()).join(", ")
-        )
-    })
+    Offset::named(text).ok_or_else(|| right(text, &known))
 }
 
 fn light_sampling(text: &str) -> Result<LightSampling, String> {
     let known = LightSampling::NAMED.map(|(name, _)| name);
-    LightSampling::named(text).ok_or_else(|| {
-        format!("one of {} is right; near it: {}", known.join(", "), names::near(text, known).join(", "))
-    })
+    LightSampling::named(text).ok_or_else(|| right(text, &known))
+}
+
+/// What is right in place of `text`.
+fn right(text: &str, known: &[&str]) -> String {
+    let near = names::near(text, known.iter().copied());
+    let near = if near.is_empty() { String::new() } else { format!("; near it: {}", near.join(", ")) };
+    format!("one of {} is right{near}", known.join(", "))
 }
 
 fn leave_out(text: &str) -> Result<LeaveOut, String> {

@@ -1,12 +1,11 @@
 //! `citylights stability`: is the arithmetic right where it is hardest?
 
 use super::outcome::Outcome;
-use super::terminal::print;
+use super::terminal::{print, side_by_side};
 use crate::stability::vectors::{self, AREALESS, AREALESS_LIMIT, IRRADIANCE_LIMIT, Judged, SOLID_ANGLE_LIMIT};
 use crate::stability::{CASES, Finding, Tally};
 use clap::Args;
 use rayon::prelude::*;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -48,7 +47,7 @@ fn of_file(file: &Path) -> anyhow::Result<Vec<String>> {
         print(&format!("{title}\n{}", head("category", 12)))?;
         for one in &judged {
             let finding = part(one);
-            print(&format!("{}\n", line(one.category, 12, finding)))?;
+            print(&side_by_side(&line(one.category, 12, finding)))?;
             if !finding.passed() {
                 failed.push(format!("{quantity} of {}", one.category));
             }
@@ -65,7 +64,9 @@ fn of_cases() -> anyhow::Result<Vec<String>> {
     print(&head("case", width))?;
     let mut failed = Vec::new();
     for (case, finding) in CASES.iter().zip(&findings) {
-        print(&format!("{}  {}\n", line(case.name, width, finding), case.what))?;
+        let mut parts = line(case.name, width, finding).to_vec();
+        parts.push(format!(" {}", case.what));
+        print(&side_by_side(&parts))?;
         if !finding.passed() {
             failed.push(case.name.to_owned());
         }
@@ -75,18 +76,22 @@ fn of_cases() -> anyhow::Result<Vec<String>> {
 }
 
 fn head(name: &str, width: usize) -> String {
-    let first = format!("{:width$} {:>6} {:^23}  {:^23}\n", "", "", "ours", "textbook, f32");
+    let first = [format!("{:width$} {:>6} {:^23}", "", "", "ours"), format!(" {:^23}", "textbook, f32")];
     let errors = format!("{:>8} {:>8} {:>5}", "worst", "99 %", "bad");
-    format!("{first}{name:width$} {:>6} {errors}  {errors}  {:>8} verdict\n", "tried", "limit")
+    let second =
+        [format!("{name:width$} {:>6} {errors}", "tried"), format!(" {errors}"), format!(" {:>8} verdict", "limit")];
+    side_by_side(&first) + &side_by_side(&second)
 }
 
-/// Errors, bad results and verdict.
-fn line(name: &str, width: usize, finding: &Finding) -> String {
+/// Errors, those of the textbook, and the verdict.
+fn line(name: &str, width: usize, finding: &Finding) -> [String; 3] {
     let Finding { ours, textbook, limit } = finding;
-    let mut text = format!("{name:width$} {:>6} {}  ", ours.count(), errors(ours));
-    _ = write!(text, "{:23}", textbook.as_ref().map_or_else(String::new, errors));
-    _ = write!(text, "  {limit:>8.0e} {:7}", if finding.passed() { "pass" } else { "FAIL" });
-    text
+    let textbook = textbook.as_ref().map_or_else(String::new, errors);
+    [
+        format!("{name:width$} {:>6} {}", ours.count(), errors(ours)),
+        format!(" {textbook:>23}"),
+        format!(" {limit:>8.0e} {:7}", if finding.passed() { "pass" } else { "FAIL" }),
+    ]
 }
 
 /// Worst and 99 % error; then how many were NaN, infinite or negative.

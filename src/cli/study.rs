@@ -4,7 +4,7 @@ use super::folders::{CACHE, RESULTS};
 use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
-use super::terminal::{print, say};
+use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::{resolution, seconds};
 use crate::base::error::Error;
@@ -15,6 +15,7 @@ use crate::sources::Overrides;
 use crate::study::{Entry, STUDIES, StudyOptions, find};
 use clap::Args;
 use std::cell::OnceCell;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -93,19 +94,24 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
                 };
                 let path = made.get_or_init(|| folder.path().to_owned()).display();
                 say(&format!("study {}: rows go to {path}", study.name));
+                progress.last_words(&kept(path));
                 Ok(folder)
             };
             let finished = study.run(&options, home.command(), &open, &progress).inspect_err(|error| {
                 if let (Error::Interrupted, Some(path)) = (error, made.get()) {
-                    let path = path.display();
-                    say(&format!("finished rows are in {path}; the same study with --out {path} goes on from there"));
+                    say(&kept(path.display()));
                 }
             })?;
-            print(&format!("{}\n", report::study_text(&finished)))?;
+            print(&format!("{}\n", report::study_text(&finished, width())))?;
             say(&format!("study {}: {:.0} s", study.name, finished.record.wall_s));
         }
         Ok(Outcome::Done)
     })
+}
+
+/// Where finished rows are, and how to go on.
+fn kept(folder: impl Display) -> String {
+    format!("finished rows are in {folder}; the same study with --out {folder} goes on from there")
 }
 
 /// The folder of a study where one is named; with `all` each has its own in there.

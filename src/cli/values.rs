@@ -16,9 +16,13 @@ pub(super) fn finite(text: &str) -> Result<f32, String> {
         .ok_or_else(|| "a number from -60 to 60 is right".into())
 }
 
-/// Parses a factor.
-pub(super) fn positive(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_normal() && *x > 0.0).ok_or_else(|| "a number above 0 is right".into())
+/// Parses a factor from radiance to displayed value: exposure values of -56 to 56.
+pub(super) fn exposure(text: &str) -> Result<f32, String> {
+    let right = 1e-17..=1e17;
+    text.parse()
+        .ok()
+        .filter(|x| right.contains(x))
+        .ok_or_else(|| "a number above 0, from 1e-17 to 1e17, is right".into())
 }
 
 /// Parses a number of CPU seconds.

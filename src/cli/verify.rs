@@ -6,6 +6,7 @@ use super::progress::Progress;
 use super::scene::SceneOptions;
 use super::terminal::{print, say};
 use super::threads::{pool, threads};
+use super::waiting::while_long;
 use crate::base::error::{Error, Result};
 use crate::base::names;
 use crate::base::statistics::sidak;
@@ -62,6 +63,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
     let strategies =
         arguments.strategies.as_deref().map_or_else(|| home.registry.all(), |list| home.registry.parse_list(list))?;
+    let progress = Progress::new()?;
     let scenes: Vec<Scene> = if arguments.scenes.is_empty() {
         small::all().into_iter().map(Scene::new).collect::<Result<_>>()?
     } else {
@@ -83,7 +85,6 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
             ..VerifyOptions::default()
         }
     };
-    let progress = Progress::new()?;
     let (failed, shown) = pool(arguments.threads)?.install(|| -> anyhow::Result<(Vec<String>, usize)> {
         let (mut failed, mut shown) = (Vec::new(), 0);
         for scene in scenes {
@@ -117,15 +118,16 @@ fn verify(
     options: VerifyOptions,
     watch: &Progress,
 ) -> anyhow::Result<Vec<Found>> {
-    watch.begin("strategies", strategies.len() as u64);
     let (whole, by) = (&arguments.scene_options, arguments.scene_options.light_sampling());
     let parts = scene.parts();
     let camera = if arguments.gate { parts.camera } else { parts.camera.shrunk(PIXELS) };
     let stage = whole.prepare(Scene::new(Parts { camera, ..parts })?);
     let verifier = Verifier::new(&stage, options);
-    let copies = (!arguments.gate).then(|| Copies::new(scene, whole.offset(), by)).transpose()?;
+    let what = format!("{}: being changed in ways that change no strategy's contract", scene.name());
+    let copies = while_long(&what, || (!arguments.gate).then(|| Copies::new(scene, whole.offset(), by)).transpose())?;
     // The changes are many, and each is looked at alone.
     let metamorphic = copies.as_ref().map(|copies| Metamorphic::new(copies, options.fewer()));
+    watch.begin("strategies", strategies.len() as u64);
     let found: Vec<Found> = strategies
         .par_iter()
         .map(|strategy| {
@@ -199,7 +201,7 @@ impl Found {
 }
 
 fn check(text: &str) -> std::result::Result<&'static str, String> {
-    let near = || format!("no check has that name; near it: {}", names::near(text, verify::names()).join(", "));
+    let near = || format!("no check has that name{}", names::hint(text, verify::names()));
     verify::names().find(|name| *name == text).ok_or_else(near)
 }
 

@@ -1,7 +1,6 @@
 //! What can a scene be exported to, and how are the files of each named?
 
 use crate::base::error::{Error, Result};
-use crate::base::names;
 use std::path::Path;
 
 /// What a scene can be exported to.
@@ -33,11 +32,8 @@ impl Renderer {
     /// # Errors
     /// An unknown name is an [`Error::Unknown`].
     pub(crate) fn named(text: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(|| Error::Unknown {
-            what: "format",
-            name: text.to_owned(),
-            near: names::near(text, Self::ALL.map(Self::name)),
-        })
+        let unknown = || Error::unknown("format", text, Self::ALL.map(Self::name));
+        Self::ALL.into_iter().find(|target| target.name() == text).ok_or_else(unknown)
     }
 
     /// The extensions that its files bear.

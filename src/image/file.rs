@@ -12,11 +12,20 @@ use std::path::Path;
 /// EXR gives its numbers as they are, PNG its displayed values, `[0, 1]`, with the sRGB curve undone.
 ///
 /// # Errors
-/// An extension that is neither `.png` nor `.exr`; a file that cannot be opened, is damaged or too large.
+/// An extension that is neither `.png` nor `.exr`; a file that cannot be opened, is damaged or too large: a small file may
+/// have 2^23 pixels, a larger one 64 a byte, up to [`MOST_PIXELS`](super::MOST_PIXELS).
 pub fn read(path: &Path) -> Result<Picture> {
+    read_within(path, None)
+}
+
+/// The same with as many pixels at most as are asked for, whatever the file's size.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_within(path: &Path, pixels: Option<usize>) -> Result<Picture> {
     match Format::of(path)? {
-        Format::Png => png::read(path),
-        Format::Exr => exr::read(path),
+        Format::Png => png::read(path, pixels),
+        Format::Exr => exr::read(path, pixels),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Linear light to 8 bits that a screen shows, and back.
 
-use super::picture::{MOST_PIXELS, Picture};
+use super::bound::Bound;
+use super::picture::Picture;
 use crate::base::colour::{srgb_decode, srgb_encode};
 use crate::base::error::{Error, Result};
 use ::image::codecs::png::{PngDecoder, PngEncoder};
@@ -46,18 +47,17 @@ pub(crate) fn encode_texels(width: u32, height: u32, texels: &[[u8; 3]]) -> Resu
 /// opacity is ignored.
 ///
 /// # Errors
-/// A file that cannot be opened is [`Error::Io`]; one that is damaged or larger than [`MOST_PIXELS`] is
-/// [`Error::Input`].
-pub(crate) fn read(path: &Path) -> Result<Picture> {
+/// A file that cannot be opened is [`Error::Io`]; one that is damaged or has more pixels than are asked for, or without
+/// that than its size [suggests](Bound), is [`Error::Input`].
+pub(crate) fn read(path: &Path, pixels: Option<usize>) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
+    let bound = Bound::of(&file, path, pixels)?;
     let mut limits = Limits::default();
     // 16 bits in four channels.
-    limits.max_alloc = Some(8 * MOST_PIXELS as u64);
+    limits.max_alloc = Some(8 * bound.pixels as u64);
     let decoder = PngDecoder::with_limits(BufReader::new(file), limits).map_err(|e| unreadable(path, e))?;
     let (width, height) = decoder.dimensions();
-    if u64::from(width) * u64::from(height) > MOST_PIXELS as u64 {
-        return Err(unreadable(path, format!("{width} x {height} pixels; at most {MOST_PIXELS} are read")));
-    }
+    bound.area(width.into(), height.into()).map_err(|e| unreadable(path, e))?;
     let image = DynamicImage::from_decoder(decoder).map_err(|e| unreadable(path, e))?;
     let linear = |code: u16| srgb_decode(f32::from(code) / f32::from(u16::MAX));
     let pixels = image.into_rgb16().pixels().map(|texel| texel.0.map(linear)).collect();

@@ -4,7 +4,6 @@ use super::asked::Asked;
 use super::plate::Plate;
 use super::{area_lights, draw, many_lights, offsets, picks, points, range, samples, shadow_rays, solid_angle};
 use crate::base::error::{Error, Result};
-use crate::base::names;
 
 /// A chapter of `docs/LECTURE.md`.
 pub(crate) struct Chapter {
@@ -124,7 +123,6 @@ impl Chapter {
 /// An unknown one, with those that come near it.
 pub(crate) fn find(name: &str) -> Result<&'static Chapter> {
     let is = |chapter: &&Chapter| chapter.name == name || chapter.number.to_string() == name;
-    let near = || names::near(name, CHAPTERS.iter().map(|chapter| chapter.name));
-    let unknown = || Error::Unknown { what: "chapter", name: name.to_owned(), near: near() };
+    let unknown = || Error::unknown("chapter", name, CHAPTERS.iter().map(|chapter| chapter.name));
     CHAPTERS.iter().find(is).ok_or_else(unknown)
 }

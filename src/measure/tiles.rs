@@ -40,14 +40,23 @@ impl TileFile {
     /// Opens or makes the file of what `hash` names, all that decides the tiles, in `folder`, and reads the tiles that
     /// it holds, of `receivers` receivers.
     pub(super) fn open(folder: &Path, hash: &str, receivers: usize) -> Result<(Self, Vec<Option<Vec<Exact>>>)> {
-        std::fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
         let path = folder.join(format!("{}.tiles", &hash[..hash.len().min(NAME)]));
         let head = format!("citylights tiles {hash} {receivers}\n").into_bytes();
-        let file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path);
-        let file = file.map_err(Error::io("open", &path))?;
         let known = vec![false; receivers.div_ceil(TILE)];
+        let mut tiles = vec![None; known.len()];
+        let written = std::fs::create_dir_all(folder).map_err(Error::io("create", folder)).and_then(|()| {
+            let file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path);
+            file.map_err(Error::io("open", &path))
+        });
+        let file = match written {
+            Ok(file) => file,
+            // What cannot be written is still good where nothing needs to be.
+            Err(refused) => {
+                let Some((file, whole)) = whole(&path, &head, receivers) else { return Err(refused) };
+                return Ok((Self { path, file, head, receivers, end: 0, known }, whole));
+            }
+        };
         let mut opened = Self { path, file, head, receivers, end: 0, known };
-        let mut tiles = vec![None; opened.known.len()];
         for (tile, values) in opened.locked(Self::catch_up)? {
             tiles[tile] = Some(values);
         }
@@ -122,6 +131,21 @@ impl TileFile {
         self.file.seek(SeekFrom::Start(self.end))?;
         Ok(tiles)
     }
+}
+
+/// The file and all its tiles, if it can be read and none is missing.
+fn whole(path: &Path, head: &[u8], receivers: usize) -> Option<(File, Vec<Option<Vec<Exact>>>)> {
+    let mut file = File::open(path).ok()?;
+    let mut bytes = Vec::new();
+    file.lock_shared().and_then(|()| file.read_to_end(&mut bytes)).ok()?;
+    file.unlock().ok()?;
+    let mut at = bytes.starts_with(head).then_some(head.len())?;
+    let mut tiles = vec![None; receivers.div_ceil(TILE)];
+    while let Some((tile, values, end)) = record(&bytes, at, receivers) {
+        tiles[tile] = Some(values);
+        at = end;
+    }
+    tiles.iter().all(Option::is_some).then_some((file, tiles))
 }
 
 /// The receivers of a tile.
@@ -200,6 +224,22 @@ mod tests {
         own.append(0, &[value(1.0); 3]).expect("written");
         let (_, tiles) = TileFile::open(folder.path(), HASH, 3).expect("a file");
         assert_eq!(tiles[0].as_deref(), Some(&[value(1.0); 3][..]));
+    }
+
+    #[test]
+    fn only_a_whole_file_is_taken_where_nothing_can_be_written() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let n = TILE + 3;
+        let head = |hash: &str| format!("citylights tiles {hash} {n}\n").into_bytes();
+        let found = |hash: &str| whole(&file(folder.path()), &head(hash), n).map(|(_, tiles)| tiles);
+        let (mut opened, _) = TileFile::open(folder.path(), HASH, n).expect("a file");
+        opened.append(1, &[value(2.0); 3]).expect("written");
+        assert!(found(HASH).is_none(), "a tile is missing");
+        opened.append(0, &vec![value(1.0); TILE]).expect("written");
+        assert!(found(&HASH.replace('7', "8")).is_none(), "it is another's");
+        let tiles = found(HASH).expect("whole");
+        assert_eq!(tiles[1].as_deref(), Some(&[value(2.0); 3][..]));
+        assert_eq!(tiles[0].as_deref(), Some(&vec![value(1.0); TILE][..]));
     }
 
     #[test]

@@ -282,7 +282,7 @@ impl<'a> Session<'a> {
             return Err(Trouble::Failed(format!("gave `{}`, which is no plain file name", image.file)));
         }
         let path = self.ground.folder.join(&image.file);
-        let picture = exr::read(&path).map_err(|error| failed(&error))?;
+        let picture = exr::read(&path, None).map_err(|error| failed(&error))?;
         let (width, height) = self.ground.stage.view().resolution();
         if (picture.width, picture.height) != (width, height) {
             let (w, h) = (picture.width, picture.height);

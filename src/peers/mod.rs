@@ -8,12 +8,15 @@
 //! that is not installed, fails or hangs is a row that says so, and never the end of a comparison.
 
 pub(crate) mod agreement;
+mod group;
 pub(crate) mod mask;
 pub(crate) mod measure;
 mod script;
 
+#[cfg(feature = "cli")]
+pub(crate) use group::end_all;
+
 use crate::base::error::{Error, Result};
-use crate::base::names;
 use crate::export::Renderer as Format;
 use crate::strategy::Arguments;
 
@@ -66,8 +69,7 @@ impl Peer {
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let (name, rest) = text.trim().split_once(':').unwrap_or((text.trim(), ""));
         let Some(kind) = KINDS.iter().find(|kind| kind.name == name) else {
-            let near = names::near(name, KINDS.iter().map(|kind| kind.name));
-            return Err(Error::Unknown { what: "peer", name: name.to_owned(), near });
+            return Err(Error::unknown("peer", name, KINDS.iter().map(|kind| kind.name)));
         };
         let mut arguments = Arguments::new(name, rest)?;
         let added = (kind.configure)(&mut arguments)?;

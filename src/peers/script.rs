@@ -1,15 +1,16 @@
 //! Running a peer's script and listening to it.
 //!
 //! The script prints one JSON object a line: what it is (`about`), that its renderer is not installed (`missing`), and
-//! each finished image (`image`). It is killed when the user stops the comparison, and when it has said nothing for too
-//! long.
+//! each finished image (`image`). It is ended, with all that it has started, when the user stops the comparison, and when
+//! it has said nothing for too long.
 
+use super::group::Group;
 use crate::base::error::Error;
 use crate::measure::observer::Observer;
 use serde::Deserialize;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -104,33 +105,33 @@ pub(super) fn run(
     watch: &dyn Observer,
     mut each: impl FnMut(Line) -> Result<(), Trouble>,
 ) -> Result<(), Trouble> {
-    let mut running = Running(command(call).spawn().map_err(|error| no_python(call.python, &error))?);
-    let complaints = complaints(&mut running.0);
-    let lines = lines(&mut running.0);
+    let mut running = Group::start(&mut command(call)).map_err(|error| no_python(call.python, &error))?;
+    let complaints = complaints(&mut running);
+    let lines = lines(&mut running);
     let mut heard = Instant::now();
     let failed = |why: String| Trouble::Failed(format!("{why}{}", last_line(&complaints)));
-    let mut status = None;
-    let status = loop {
+    let mut has_ended = false;
+    loop {
         watch.check()?;
-        let text = match (lines.recv_timeout(BEAT), status) {
+        let text = match (lines.recv_timeout(BEAT), has_ended) {
             (Ok(text), _) => text,
-            (Err(RecvTimeoutError::Disconnected), Some(status)) => break status,
+            (Err(RecvTimeoutError::Disconnected), true) => break,
             // One that has ended may leave a child of its own that holds the pipe open.
-            (Err(RecvTimeoutError::Timeout), Some(status)) if heard.elapsed() > LAST_WORDS => break status,
-            (Err(_), None) if heard.elapsed() > call.patience => {
+            (Err(RecvTimeoutError::Timeout), true) if heard.elapsed() > LAST_WORDS => break,
+            (Err(_), false) if heard.elapsed() > call.patience => {
                 let seconds = call.patience.as_secs_f64();
                 return Err(failed(format!("said nothing for {seconds} s and was stopped")));
             }
-            (Err(end), None) => {
-                status = running.0.try_wait().map_err(|error| failed(error.to_string()))?;
-                if status.is_some() {
+            (Err(end), false) => {
+                has_ended = running.has_ended().map_err(|error| failed(error.to_string()))?;
+                if has_ended {
                     heard = Instant::now();
                 } else if end == RecvTimeoutError::Disconnected {
                     std::thread::sleep(BEAT);
                 }
                 continue;
             }
-            (Err(_), Some(_)) => continue,
+            (Err(_), true) => continue,
         };
         heard = Instant::now();
         let line = serde_json::from_str(&text).map_err(|error| {
@@ -138,7 +139,8 @@ pub(super) fn run(
             failed(format!("its script said `{start}`, which is no line of the contract ({error})"))
         })?;
         each(line)?;
-    };
+    }
+    let status = running.end().map_err(|error| failed(error.to_string()))?;
     if status.success() { Ok(()) } else { Err(failed(ended(status))) }
 }
 
@@ -166,21 +168,10 @@ fn ended(status: ExitStatus) -> String {
     }
 }
 
-/// A process that does not outlive its listener.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // Both fail only for a process that has ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
 /// What a process prints, line by line.
-fn lines(child: &mut Child) -> mpsc::Receiver<String> {
+fn lines(process: &mut Group) -> mpsc::Receiver<String> {
     let (send, receive) = mpsc::channel();
-    if let Some(stdout) = child.stdout.take() {
+    if let Some(stdout) = process.stdout() {
         std::thread::spawn(move || {
             let lines = BufReader::new(stdout.take(MOST_SAID)).split(b'\n').map_while(std::io::Result::ok);
             // Ends when nobody listens any more.
@@ -191,9 +182,9 @@ fn lines(child: &mut Child) -> mpsc::Receiver<String> {
 }
 
 /// The end of what a process complains about, kept up to date.
-fn complaints(child: &mut Child) -> Arc<Mutex<Vec<u8>>> {
+fn complaints(process: &mut Group) -> Arc<Mutex<Vec<u8>>> {
     let kept = Arc::new(Mutex::new(Vec::new()));
-    if let Some(mut stderr) = child.stderr.take() {
+    if let Some(mut stderr) = process.stderr() {
         let kept = Arc::clone(&kept);
         std::thread::spawn(move || {
             let mut block = [0; 1024];

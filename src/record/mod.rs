@@ -17,8 +17,10 @@
 //! | how do a comparison and a study survive an interruption? | `store`, `study_store` |
 //! | may a run go on with what an earlier one left? | `origin` |
 //! | which version of which files is it? | `SCHEMA`, `files` |
+//! | can a record that was read be what it says? | `check` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
+mod check;
 pub(crate) mod environment;
 mod files;
 pub(crate) mod folder;

@@ -1,5 +1,6 @@
 //! Where the record and the rows of a comparison lie: files in its folder that survive an interruption.
 
+use super::check::Checked;
 use super::files::input;
 use super::origin;
 use super::row::{COLUMNS, Row};
@@ -57,8 +58,8 @@ pub(super) fn write_record(path: &Path, record: &impl Serialize) -> Result<()> {
     write_whole(path, text.as_bytes())
 }
 
-/// Reads a record from JSON; one of another schema is refused.
-pub(super) fn read_record<T: DeserializeOwned>(path: &Path, known: u32) -> Result<T> {
+/// Reads a record from JSON; one of another schema, or that cannot be what it says, is refused.
+pub(super) fn read_record<T: DeserializeOwned + Checked>(path: &Path, known: u32) -> Result<T> {
     #[derive(Deserialize)]
     struct Version {
         schema: u32,
@@ -70,7 +71,9 @@ pub(super) fn read_record<T: DeserializeOwned>(path: &Path, known: u32) -> Resul
         let message = format!("is {schema}, this program reads {known}: use the version that wrote it");
         return Err(input(path, None, "schema", message));
     }
-    serde_json::from_str(&text).map_err(unusable)
+    let record: T = serde_json::from_str(&text).map_err(unusable)?;
+    record.check().map_err(|(field, why)| input(path, None, &field, why))?;
+    Ok(record)
 }
 
 /// The rows of a `runs.csv`.

@@ -8,6 +8,7 @@ mod complete;
 mod facts;
 mod headline;
 mod mark;
+mod markdown;
 mod number;
 mod order;
 mod page;
@@ -27,7 +28,7 @@ pub(crate) use number::{grouped, short};
 pub(crate) use page::{page, section};
 pub(crate) use plot::plot;
 #[cfg(feature = "cli")]
-pub(crate) use sheet::broken;
+pub(crate) use sheet::{WIDTH as USUAL_COLUMNS, broken};
 pub(crate) use study::study_text;
 pub(crate) use table::table;
 
@@ -65,7 +66,7 @@ pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
             )));
         }
         let swept = sweep::sweeps(scene)?.into_iter().map(|(parameter, text)| {
-            let name = store::file_name(&format!("{}-{parameter}.svg", scene.name));
+            let name = format!("{}.svg", store::file_name(&format!("{}-{parameter}", scene.name)));
             Derived { name, text }
         });
         let swept: Vec<Derived> = swept.collect();
@@ -113,13 +114,13 @@ pub(crate) fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
     let seen = page.parent().and_then(|home| folder.strip_prefix(home).ok()).unwrap_or(folder);
     if is_study(folder) {
         let record = read_study(folder)?;
-        let name = format!("study {}", record.record.study);
+        let name = markdown::comment(&format!("study {}", record.record.study));
         return Ok(vec![Section { body: study::section(&record, &seen.join("").display().to_string()), name }]);
     }
     let (run, rows) = (store::read_run(folder)?, store::read_rows(folder)?.rows);
     let sections = run.scenes.iter().map(|scene| {
         let plot = seen.join(format!("{}.svg", store::file_name(&scene.name))).display().to_string();
-        Section { name: scene.name.clone(), body: section(&run, scene, &rows, &plot) }
+        Section { name: markdown::comment(&scene.name), body: section(&run, scene, &rows, &plot) }
     });
     Ok(sections.collect())
 }

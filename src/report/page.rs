@@ -1,6 +1,7 @@
 //! The same in Markdown: a page for a scene, and a shorter section for a page that people write.
 
 use super::facts::{facts, warnings};
+use super::markdown;
 use super::table::sheets;
 use crate::record::{Program, Row, RunRecord, SceneRecord};
 use std::fmt::Write;
@@ -14,12 +15,15 @@ pub(crate) fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &st
         _ = write!(text, "\n{}", sheet.markdown(2));
     }
     let machine = &run.machine;
-    _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", run.command);
-    _ = writeln!(text, "- date: {}", run.date);
-    _ = writeln!(text, "- revision: {}", built(run.program.as_ref(), &run.version, &run.revision));
-    _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
-    _ = writeln!(text, "- compiler: {}; {}", run.compiler, run.flags);
-    _ = writeln!(text, "- seed: {}", run.seed);
+    _ = write!(text, "\n## Made by\n\n{}\n\n", markdown::block(&run.command));
+    let made = [
+        format!("date: {}", run.date),
+        format!("revision: {}", built(run.program.as_ref(), &run.version, &run.revision)),
+        format!("machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os),
+        format!("compiler: {}; {}", run.compiler, run.flags),
+        format!("seed: {}", run.seed),
+    ];
+    made.iter().for_each(|line| _ = writeln!(text, "- {}", markdown::plain(line)));
     text
 }
 
@@ -32,7 +36,8 @@ pub(crate) fn section(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: 
     if let Some(answer) = sheets(scene, rows).first() {
         _ = write!(text, "\n{}", answer.markdown(3));
     }
-    _ = writeln!(text, "\nMade by `{}` ({}, revision {}, {}).", run.command, run.date, run.revision, run.machine.cpu);
+    let place = format!("({}, revision {}, {})", run.date, run.revision, run.machine.cpu);
+    _ = writeln!(text, "\nMade by {} {}.", markdown::code(&run.command), markdown::plain(&place));
     text
 }
 
@@ -48,9 +53,10 @@ pub(super) fn built(program: Option<&Program>, version: &str, revision: &str) ->
 
 /// Name, facts, notes, warnings and plot.
 fn opening(heading: &str, run: &RunRecord, scene: &SceneRecord, plot: &str) -> String {
-    let mut text = format!("{heading} {}\n\n", scene.name);
-    facts(run, scene).iter().chain(&scene.notes).for_each(|fact| _ = writeln!(text, "- {fact}"));
-    warnings(run, scene).iter().for_each(|warning| _ = writeln!(text, "- **{warning}**"));
-    _ = write!(text, "\n![{}: relMSE against CPU seconds]({plot})\n", scene.name);
+    let mut text = format!("{heading} {}\n\n", markdown::plain(&scene.name));
+    let facts = facts(run, scene);
+    facts.iter().chain(&scene.notes).for_each(|fact| _ = writeln!(text, "- {}", markdown::plain(fact)));
+    warnings(run, scene).iter().for_each(|warning| _ = writeln!(text, "- **{}**", markdown::plain(warning)));
+    _ = write!(text, "\n![{}: relMSE against CPU seconds]({plot})\n", markdown::label(&scene.name));
     text
 }

@@ -1,5 +1,6 @@
 //! A table before it is known where it will be shown: on a terminal or in Markdown.
 
+use super::markdown;
 use super::number::{Estimate, HEAVY, UNKNOWN};
 use super::order::{self, measured};
 use crate::record::Summary;
@@ -62,8 +63,8 @@ impl Head {
     }
 }
 
-/// Columns of a terminal that all is made to fit.
-pub(super) const WIDTH: usize = 140;
+/// Columns that all is made to fit where nobody says how many there are.
+pub(crate) const WIDTH: usize = 140;
 /// Longest line of a strategy's name on a terminal; with it the widest table stays within [`WIDTH`].
 const NAME_WIDTH: usize = 22;
 
@@ -101,54 +102,79 @@ impl Sheet {
         self
     }
 
-    /// The table in plain text. One that would be too wide has its intervals below the figures and not beside them.
-    pub(super) fn text(&self) -> String {
-        let beside = self.drawn(Estimate::line);
-        let is_wide = beside.lines().any(|line| line.chars().count() > WIDTH);
-        let drawn = if is_wide {
-            self.drawn(|e| format!("{}\n{}", e.figure, e.interval).trim_end().to_owned())
-        } else {
-            beside
-        };
+    /// The table in plain text, `width` columns wide at most. One that would be wider has its intervals below the figures
+    /// and not beside them; where that is not enough, the last columns stand in a table below, beside the names again.
+    pub(super) fn text(&self, width: usize) -> String {
+        let all: Vec<usize> = (0..self.heads.len()).collect();
+        let beside = self.drawn(&all, Estimate::line);
+        let drawn = if fits(&beside, width) { beside.trim_fmt() } else { self.in_parts(width) };
         let mut text = format!("{}\n\n{drawn}\n", self.title);
         if !self.below.is_empty() {
             text.push('\n');
         }
-        let lines = self.below.iter().flat_map(|note| broken(note, WIDTH - 1));
+        let lines = self.below.iter().flat_map(|note| broken(note, width - 1));
         lines.for_each(|line| _ = writeln!(text, " {line}"));
         text
     }
 
-    /// Heads and lines, with figures as `figure` writes them.
-    fn drawn(&self, figure: impl Fn(&Estimate) -> String) -> String {
+    /// Tables one below the other, each with the names and as many of the other columns as it can hold.
+    fn in_parts(&self, width: usize) -> String {
+        let below = |e: &Estimate| format!("{}\n{}", e.figure, e.interval).trim_end().to_owned();
+        let mut parts = vec![vec![0]];
+        for at in 1..self.heads.len() {
+            let part = parts.last_mut().expect("there is one from the beginning");
+            part.push(at);
+            if part.len() > 2 && !fits(&self.drawn(part, below), width) {
+                part.pop();
+                parts.push(vec![0, at]);
+            }
+        }
+        let drawn = parts.iter().map(|part| {
+            let mut table = self.drawn(part, below);
+            if !fits(&table, width) {
+                // A single column: its words are broken wherever they must be.
+                let width = u16::try_from(width).unwrap_or(u16::MAX);
+                table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+            }
+            table.trim_fmt()
+        });
+        drawn.collect::<Vec<_>>().join("\n\n")
+    }
+
+    /// Some columns of heads and lines, with figures as `figure` writes them.
+    fn drawn(&self, columns: &[usize], figure: impl Fn(&Estimate) -> String) -> Table {
+        let heads = || columns.iter().map(|&at| &self.heads[at]);
         let style = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
         let mut table = Table::new();
         table.load_style(style).set_content_arrangement(ContentArrangement::Disabled);
-        table.set_header(self.heads.iter().map(|head| &head.text));
+        table.set_header(heads().map(|head| &head.text));
         for (at, line) in self.lines.iter().enumerate() {
             if self.is_new_group(at) {
                 table.add_row([" "]);
             }
-            table.add_row(line.cells.iter().zip(&self.heads).map(|(entry, head)| match entry {
+            // The row of a strategy that was not measured may end early.
+            let cells = columns.iter().zip(heads()).filter_map(|(&at, head)| Some((line.cells.get(at)?, head)));
+            table.add_row(cells.map(|(entry, head)| match entry {
                 Entry::Name(name, remark) => Cell::new([folded(name), folded(remark)].join("\n").trim_end()),
                 Entry::Text(text) if head.left => Cell::new(folded(text)),
                 Entry::Text(text) => Cell::new(text).set_alignment(CellAlignment::Right),
                 Entry::Figure(estimate) => Cell::new(figure(estimate)).set_alignment(CellAlignment::Right),
             }));
         }
-        for (column, head) in table.column_iter_mut().zip(&self.heads) {
+        for (column, head) in table.column_iter_mut().zip(heads()) {
             column.set_padding((1, 0));
             if !head.left {
                 column.set_cell_alignment(CellAlignment::Right);
             }
         }
-        table.trim_fmt()
+        table
     }
 
     /// The table in GitHub's Markdown, under a heading of `level`, 1 to 6.
     pub(super) fn markdown(&self, level: usize) -> String {
-        let mut text = format!("{} {}\n\n|", "#".repeat(level), self.title);
-        self.heads.iter().for_each(|head| _ = write!(text, " {} |", head.text.replace('\n', "<br>")));
+        let mut text = format!("{} {}\n\n|", "#".repeat(level), markdown::plain(&self.title));
+        let head = |head: &Head| head.text.split('\n').map(markdown::cell).collect::<Vec<_>>().join("<br>");
+        self.heads.iter().for_each(|one| _ = write!(text, " {} |", head(one)));
         text.push_str("\n|");
         self.heads.iter().for_each(|head| text.push_str(if head.left { ":--|" } else { "--:|" }));
         text.push('\n');
@@ -159,15 +185,15 @@ impl Sheet {
             text.push('|');
             for entry in &line.cells {
                 _ = match entry {
-                    Entry::Name(name, remark) if remark.is_empty() => write!(text, " `{}` |", escaped(name)),
-                    Entry::Name(name, remark) => write!(text, " `{}`<br>{} |", escaped(name), escaped(remark)),
-                    Entry::Text(cell) => write!(text, " {} |", escaped(cell)),
-                    Entry::Figure(estimate) => write!(text, " {} |", escaped(&estimate.line())),
+                    Entry::Name(name, remark) if remark.is_empty() => write!(text, " {} |", name_cell(name)),
+                    Entry::Name(name, remark) => write!(text, " {}<br>{} |", name_cell(name), markdown::cell(remark)),
+                    Entry::Text(cell) => write!(text, " {} |", markdown::cell(cell)),
+                    Entry::Figure(estimate) => write!(text, " {} |", markdown::cell(&estimate.line())),
                 };
             }
             text.push('\n');
         }
-        self.below.iter().for_each(|note| _ = write!(text, "\n- {note}"));
+        self.below.iter().for_each(|note| _ = write!(text, "\n- {}", markdown::plain(note)));
         if !self.below.is_empty() {
             text.push('\n');
         }
@@ -195,9 +221,14 @@ pub(crate) fn broken(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// What Markdown would take for the end of a cell, marked as none.
-fn escaped(text: &str) -> String {
-    text.replace('|', "\\|")
+/// A name in a cell of Markdown: the end of a cell is one in code, too.
+fn name_cell(name: &str) -> String {
+    markdown::code(name).replace('|', "\\|")
+}
+
+/// Whether no line of a table is wider.
+fn fits(table: &Table, width: usize) -> bool {
+    table.trim_fmt().lines().all(|line| line.chars().count() <= width)
 }
 
 /// What is to be said of a strategy in a word; empty for most.
@@ -210,17 +241,24 @@ fn remark(summary: &Summary) -> &'static str {
     }
 }
 
-/// `text` in lines of at most [`NAME_WIDTH`] where it can be broken: after `:` and `,` and between words;
-/// further lines are indented.
+/// `text` in lines of at most [`NAME_WIDTH`] where it can be broken: after `:` and `,` and between words, and in a word
+/// that is much longer; further lines are indented.
 fn folded(text: &str) -> String {
     let mut lines = vec![String::new()];
-    for part in text.split_inclusive([':', ',', ' ']) {
+    for part in text.split_inclusive([':', ',', ' ']).flat_map(pieces) {
         let line = lines.last_mut().expect("there is always a line");
         if !line.trim().is_empty() && line.chars().count() + part.trim_end().chars().count() > NAME_WIDTH {
             lines.push(format!("  {part}"));
         } else {
-            line.push_str(part);
+            line.push_str(&part);
         }
     }
     lines.join("\n")
+}
+
+/// A word, in pieces if it is longer than half a line more than a line.
+fn pieces(word: &str) -> Vec<String> {
+    let letters: Vec<char> = word.chars().collect();
+    let most = if letters.len() > NAME_WIDTH + NAME_WIDTH / 2 { NAME_WIDTH - 2 } else { letters.len().max(1) };
+    letters.chunks(most).map(|piece| piece.iter().collect()).collect()
 }

@@ -2,9 +2,10 @@
 
 use super::chart::{Chart, Dot, Scale, Series};
 use super::mark::Mark;
+use super::markdown;
 use super::number::{Estimate, NONE, bytes, grouped, percent, short};
 use super::page::built;
-use super::sheet::{Entry, Head, Line, Sheet, WIDTH, broken};
+use super::sheet::{Entry, Head, Line, Sheet, broken};
 use crate::base::error::Result;
 use crate::record::study::{
     AxisRecord, Cell, Cells, ColumnRecord, Format, PlotRecord, Study, StudyRecord, TableRecord,
@@ -12,14 +13,14 @@ use crate::record::study::{
 use crate::record::{Interval, store};
 use std::fmt::Write;
 
-/// The tables of a study in plain text, under what a reader must know of all of them.
-pub(crate) fn study_text(study: &Study) -> String {
+/// The tables of a study in plain text, at most so many columns wide, under what a reader must know of all of them.
+pub(crate) fn study_text(study: &Study, width: usize) -> String {
     let record = &study.record;
     let mut text = format!("{}: {}\n", record.study, record.question);
     let warnings = warnings(record).into_iter().map(|warning| format!("warning: {warning}"));
-    let lines = record.notes.iter().cloned().chain(warnings).flat_map(|line| broken(&line, WIDTH - 2));
+    let lines = record.notes.iter().cloned().chain(warnings).flat_map(|line| broken(&line, width - 2));
     lines.for_each(|line| _ = writeln!(text, "  {line}"));
-    sheets(study).for_each(|sheet| _ = write!(text, "\n{}", sheet.text()));
+    sheets(study).for_each(|sheet| _ = write!(text, "\n{}", sheet.text(width)));
     text
 }
 
@@ -28,12 +29,15 @@ pub(super) fn page(study: &Study) -> String {
     let record = &study.record;
     let mut text = body(study, 1, "");
     let machine = &record.machine;
-    _ = write!(text, "\n## Made by\n\n```\n{}\n```\n\n", record.command);
-    _ = writeln!(text, "- date: {}; {} wall seconds", record.date, short(record.wall_s));
-    _ = writeln!(text, "- revision: {}", built(record.program.as_ref(), &record.version, &record.revision));
-    _ = writeln!(text, "- machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os);
-    _ = writeln!(text, "- compiler: {}; {}", record.compiler, record.flags);
-    _ = writeln!(text, "- seed: {}", record.seed);
+    _ = write!(text, "\n## Made by\n\n{}\n\n", markdown::block(&record.command));
+    let made = [
+        format!("date: {}; {} wall seconds", record.date, short(record.wall_s)),
+        format!("revision: {}", built(record.program.as_ref(), &record.version, &record.revision)),
+        format!("machine: {}, {} cores, {}", machine.cpu, machine.cores, machine.os),
+        format!("compiler: {}; {}", record.compiler, record.flags),
+        format!("seed: {}", record.seed),
+    ];
+    made.iter().for_each(|line| _ = writeln!(text, "- {}", markdown::plain(line)));
     text
 }
 
@@ -42,27 +46,29 @@ pub(super) fn page(study: &Study) -> String {
 pub(super) fn section(study: &Study, folder: &str) -> String {
     let record = &study.record;
     let mut text = body(study, 2, folder);
-    let (date, revision, cpu) = (&record.date, &record.revision, &record.machine.cpu);
-    _ = writeln!(text, "\nMade by `{}` ({date}, revision {revision}, {cpu}).", record.command);
+    let place = format!("({}, revision {}, {})", record.date, record.revision, record.machine.cpu);
+    _ = writeln!(text, "\nMade by {} {}.", markdown::code(&record.command), markdown::plain(&place));
     text
 }
 
 /// Question, notes, warnings, tables and plots, under a heading of `level`.
 fn body(study: &Study, level: usize, folder: &str) -> String {
     let record = &study.record;
-    let mut text = format!("{} study {}\n\n{}\n", "#".repeat(level), record.study, record.question);
+    let (name, question) = (markdown::plain(&record.study), markdown::plain(&record.question));
+    let mut text = format!("{} study {name}\n\n{question}\n", "#".repeat(level));
     if !record.notes.is_empty() || !warnings(record).is_empty() {
         text.push('\n');
     }
-    record.notes.iter().for_each(|note| _ = writeln!(text, "- {note}"));
-    warnings(record).iter().for_each(|warning| _ = writeln!(text, "- **{warning}**"));
+    record.notes.iter().for_each(|note| _ = writeln!(text, "- {}", markdown::plain(note)));
+    warnings(record).iter().for_each(|warning| _ = writeln!(text, "- **{}**", markdown::plain(warning)));
     for picture in &record.pictures {
-        _ = write!(text, "\n![{}]({folder}{})\n", picture.title, picture.file);
+        let (title, file) = (markdown::label(&picture.title), store::file_name(&picture.file));
+        _ = write!(text, "\n![{title}]({folder}{file})\n");
     }
     for (table, sheet) in record.tables.iter().zip(sheets(study)) {
         _ = write!(text, "\n{}", sheet.markdown(level + 1));
         for plot in &table.plots {
-            _ = write!(text, "\n![{}]({folder}{})\n", plot.title, plot_name(record, plot));
+            _ = write!(text, "\n![{}]({folder}{})\n", markdown::label(&plot.title), plot_name(record, plot));
         }
     }
     text
@@ -80,7 +86,7 @@ pub(super) fn plots(study: &Study) -> Result<Vec<(String, String)>> {
 }
 
 fn plot_name(record: &StudyRecord, plot: &PlotRecord) -> String {
-    store::file_name(&format!("{}-{}.svg", record.study, plot.name))
+    format!("{}.svg", store::file_name(&format!("{}-{}", record.study, plot.name)))
 }
 
 fn warnings(record: &StudyRecord) -> Vec<String> {

@@ -9,22 +9,22 @@ use super::headline::against_time;
 use super::number::{Estimate, NONE, bytes, digits, percent, short};
 use super::order::{measured, ordered};
 use super::rows::Rows;
-use super::sheet::{Column, Sheet, WIDTH, broken};
+use super::sheet::{Column, Sheet, broken};
 use crate::base::claim::Claim;
 use crate::record::{Interval, Row, RunRecord, SceneRecord, Summary};
 use std::fmt::Write;
 
-/// The tables of a scene in plain text, at most 140 columns wide, under a few lines on what was measured.
+/// The tables of a scene in plain text, at most so many columns wide, under a few lines on what was measured.
 ///
 /// `rows` may hold other scenes too.
-pub(crate) fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row]) -> String {
+pub(crate) fn table(run: &RunRecord, scene: &SceneRecord, rows: &[Row], width: usize) -> String {
     let mut text = format!("{}\n", scene.name);
     let notes = scene.notes.iter().map(|note| format!("note: {note}"));
     let warnings = warnings(run, scene).into_iter().map(|warning| format!("warning: {warning}"));
-    let lines = facts(run, scene).into_iter().chain(notes).chain(warnings).flat_map(|line| broken(&line, WIDTH - 2));
+    let lines = facts(run, scene).into_iter().chain(notes).chain(warnings).flat_map(|line| broken(&line, width - 2));
     lines.for_each(|line| _ = writeln!(text, "  {line}"));
     for sheet in sheets(scene, rows) {
-        _ = write!(text, "\n{}", sheet.text());
+        _ = write!(text, "\n{}", sheet.text(width));
     }
     text
 }

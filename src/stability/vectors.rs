@@ -126,10 +126,10 @@ impl Vector {
             return Err((at, format!("{what}, with {} columns; 15 are right: {}", record.len(), COLUMNS.join(","))));
         }
         let name = record[0];
-        let category = CATEGORIES.into_iter().find(|category| *category == name).ok_or_else(|| {
-            let near = names::near(name, CATEGORIES);
-            (0, format!("unknown category `{name}`; near it: {}", near.join(", ")))
-        })?;
+        let category = CATEGORIES
+            .into_iter()
+            .find(|category| *category == name)
+            .ok_or_else(|| (0, format!("unknown category `{name}`{}", names::hint(name, CATEGORIES))))?;
         let number = |at: usize| match record[at].parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ => Err((at, format!("`{}` is not a finite number; one like -1.25e-3 is right", record[at]))),

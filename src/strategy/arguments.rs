@@ -154,8 +154,10 @@ impl<'r> Arguments<'r> {
                 Err(Error::Invalid(format!("{} has no parameters; `{name}` was given", self.owner)))
             }
             Some((name, _)) => {
-                let near = names::near(&name, self.read.iter().map(|p| p.name));
-                Err(Error::Unknown { what: "parameter", name: format!("{}:{name}", self.owner), near })
+                let known: Vec<&str> = self.read.iter().map(|p| p.name).collect();
+                let near = names::near(&name, known.iter().copied());
+                let known = known.into_iter().map(str::to_owned).collect();
+                Err(Error::Unknown { what: "parameter", name: format!("{}:{name}", self.owner), near, known })
             }
         }
     }

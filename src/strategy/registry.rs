@@ -8,7 +8,6 @@ use super::sweep;
 use crate::base::claim::Claim;
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
-use crate::base::names;
 
 /// A strategy that can be named.
 #[derive(Clone)]
@@ -123,8 +122,7 @@ impl Registry {
     ) -> Result<Configured> {
         let (name, rest) = text.trim().split_once(':').unwrap_or((text.trim(), ""));
         let Some(entry) = self.entries.iter().find(|entry| entry.info.name == name) else {
-            let near = names::near(name, self.infos().map(|info| info.name));
-            return Err(Error::Unknown { what: "strategy", name: name.to_owned(), near });
+            return Err(Error::unknown("strategy", name, self.infos().map(|info| info.name)));
         };
         let sources = |text: &str| self.parse_source(text);
         let mut arguments = Arguments::new(name, rest)?.with_sources(&sources);

@@ -3,7 +3,6 @@
 use super::entry::Entry;
 use super::{cutoff, offsets, scaling, soft_shadows, strategies, visible};
 use crate::base::error::{Error, Result};
-use crate::base::names;
 
 /// Every study, in the order of `citylights list studies`.
 pub(crate) const STUDIES: [Entry; 6] =
@@ -14,10 +13,6 @@ pub(crate) const STUDIES: [Entry; 6] =
 /// # Errors
 /// An unknown name, with those that come near it.
 pub(crate) fn find(name: &str) -> Result<Entry> {
-    let unknown = || Error::Unknown {
-        what: "study",
-        name: name.to_owned(),
-        near: names::near(name, STUDIES.iter().map(|entry| entry.name)),
-    };
+    let unknown = || Error::unknown("study", name, STUDIES.iter().map(|entry| entry.name));
     STUDIES.into_iter().find(|entry| entry.name == name).ok_or_else(unknown)
 }

@@ -9,11 +9,17 @@
 //! | `export` | exports are written whole or not at all |
 //! | `diff_image` | two pictures are compared by the figures that papers print |
 //! | `stability` | a file of exact values is met, or refused with line and column |
+//! | `processes` | whoever is asked to stop stops soon, and takes along what it has started |
+//! | `bounds` | no file takes more memory, time or length of name than its size allows |
+//! | `said` | what is said of a file is text, fits the terminal, and names what is near alone |
 
+mod bounds;
 mod cli;
 mod diff_image;
 mod export;
 mod killed;
 mod lecture;
 mod peers;
+mod processes;
+mod said;
 mod stability;

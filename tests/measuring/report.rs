@@ -268,7 +268,7 @@ fn stored(folder: &Path) {
 #[test]
 fn the_terminal_table_is_the_recorded_one() {
     let (run, rows) = record();
-    let table = report::table(&run, &run.scenes[0], &rows);
+    let table = report::table(&run, &run.scenes[0], &rows, 140);
     let widest = table.lines().map(|line| line.chars().count()).max().expect("lines");
     assert!(widest <= 140, "{widest} columns\n{table}");
     insta::assert_snapshot!(table);
@@ -337,14 +337,15 @@ fn readings_say_how_they_were_found() {
 #[test]
 fn an_interval_without_an_upper_end_is_a_bound_and_explained() {
     let (mut run, rows) = record();
-    let explained = |run: &RunRecord| report::table(run, &run.scenes[0], &rows).matches(" †: too heavy a tail").count();
+    let explained =
+        |run: &RunRecord| report::table(run, &run.scenes[0], &rows, 140).matches(" †: too heavy a tail").count();
     assert_eq!(explained(&run), 0);
     of(&mut run, "power").variance_seconds = Interval { mean: 3.1, low: 2.178, high: f64::INFINITY };
     assert_eq!(cells(&run, &rows, "power")[V], ">2.1 †");
     assert_eq!(explained(&run), 1, "under the one table that has the mark");
     of(&mut run, "power").variance_seconds = Interval { mean: 3.1, low: f64::NEG_INFINITY, high: f64::INFINITY };
     assert_eq!(cells(&run, &rows, "power")[V], "3.10 ±?");
-    assert!(report::table(&run, &run.scenes[0], &rows).contains(" ±?: the runs give no interval."));
+    assert!(report::table(&run, &run.scenes[0], &rows, 140).contains(" ±?: the runs give no interval."));
 }
 
 #[test]
@@ -352,7 +353,7 @@ fn what_failed_has_no_figures_and_is_named_once_more_in_a_warning() {
     let (run, rows) = record();
     let cells = cells(&run, &rows, "broken");
     assert!(cells.iter().all(String::is_empty) && cells.len() > V, "{cells:?}");
-    let table = report::table(&run, &run.scenes[0], &rows);
+    let table = report::table(&run, &run.scenes[0], &rows, 140);
     assert_eq!(
         table.matches("`broken` failed: a light that contributes is never chosen: light 17, p = 0.0001.").count(),
         1
@@ -400,7 +401,7 @@ fn a_bias_that_may_be_zero_has_no_balance() {
 #[test]
 fn what_errors_are_taken_at_and_what_is_off_the_clock_is_said() {
     let (mut run, rows) = record();
-    let table = |run: &RunRecord| report::table(run, &run.scenes[0], &rows);
+    let table = |run: &RunRecord| report::table(run, &run.scenes[0], &rows, 140);
     assert!(table(&run).contains("  off the clock, shared by all strategies, wall seconds: occluders 0.0310\n"));
     assert!(!table(&run).contains("errors are taken at"));
     run.scenes[0].pixels_measured = 2_000;
@@ -434,7 +435,7 @@ fn too_few_runs_to_see_a_large_bias_are_a_warning() {
         for summary in scene.summaries.iter_mut().filter(|s| ["uniform", "power", "broken"].contains(&&*s.strategy)) {
             summary.detectable_bias = detectable;
         }
-        let table = report::table(&run, &run.scenes[0], &rows);
+        let table = report::table(&run, &run.scenes[0], &rows, 140);
         table.lines().find(|line| line.contains("could go unseen")).map(str::to_owned)
     };
     assert_eq!(warned(10_000, 0.05), None);
@@ -448,7 +449,7 @@ fn columns_that_cannot_vary_are_left_out() {
     let (mut run, rows) = record();
     run.scenes[0].summaries.retain(|s| s.claim == Claim::Unbiased);
     run.scenes[0].summaries.iter_mut().for_each(|s| s.counts.blocked = 0);
-    let table = report::table(&run, &run.scenes[0], &rows);
+    let table = report::table(&run, &run.scenes[0], &rows, 140);
     for absent in ["claim", "b²", "t*,", "blocked", "dark direction", "behind light", "candidates"] {
         assert!(!table.contains(&format!("{absent} ")) && !table.contains(&format!("{absent}\n")), "{absent}\n{table}");
     }
@@ -459,7 +460,7 @@ fn columns_that_cannot_vary_are_left_out() {
 fn strategies_without_numbers_still_make_a_table_and_a_plot() {
     let (mut run, _) = record();
     run.scenes[0].summaries.retain(|s| s.error.is_some() || s.skipped.is_some());
-    let table = report::table(&run, &run.scenes[0], &[]);
+    let table = report::table(&run, &run.scenes[0], &[], 140);
     assert!(table.contains("skipped: one pass") && table.contains("failed: a light"), "{table}");
     assert!(report::plot(&run.scenes[0]).expect("drawn").contains("no points to draw"));
 }
@@ -519,7 +520,7 @@ fn another_renderer_stands_apart_and_leaves_the_others_as_they_are() {
     let peer = Maker { strategy: "cycles", claim, setup_s: 1.5, pass_s: 0.04, v: 0.9, bias2: 0.02 };
     run.scenes[0].summaries.push(peer.summary());
     rows.extend(peer.rows());
-    let table = report::table(&run, &run.scenes[0], &rows);
+    let table = report::table(&run, &run.scenes[0], &rows, 140);
     let line = table.lines().find(|line| line.trim_start().starts_with("cycles")).expect("a row");
     assert!(line.contains("external") && line.contains(" – "), "{line}");
     assert!(table.contains("`cycles`: Cycles in Blender 5."), "{table}");

@@ -129,7 +129,7 @@ fn the_record_and_its_page_are_the_recorded_ones() {
     insta::assert_snapshot!("study_schema_2_json", read(STUDY_FILE));
     insta::assert_snapshot!("study_schema_2_csv", read("growth.csv"));
     insta::assert_snapshot!("study_page", read("growth.md"));
-    insta::assert_snapshot!("study_terminal", report::study_text(&study));
+    insta::assert_snapshot!("study_terminal", report::study_text(&study, 140));
     let plot = read("growth-error.svg");
     for part in ["error against lights", "lights!", "error!", "power", "picks=2, lost", "dashed and hollow: biased"] {
         assert!(plot.contains(part), "{part}");
@@ -188,7 +188,7 @@ fn an_interrupted_study_keeps_its_rows_and_says_so() {
     fs::write(&file, &text[..text.len() - 1]).expect("cut");
     let study = read_study(folder.path()).expect("read");
     assert_eq!(study.rows, [[first.clone()]], "the line that was cut short is left out");
-    assert!(report::study_text(&study).contains("warning: not finished: some rows are missing"));
+    assert!(report::study_text(&study, 140).contains("warning: not finished: some rows are missing"));
     // Gone on with, it is what it would have been.
     let mut writer = begun(folder.path(), record()).expect("resumed");
     assert!(writer.has("growth", &[], 1));

@@ -2,7 +2,8 @@
 
 use super::channels::{Chosen, choose};
 use crate::base::error::{Error, Result};
-use crate::image::picture::{MOST_PIXELS, Picture};
+use crate::image::bound::Bound;
+use crate::image::picture::Picture;
 use ::exr::block::chunk::TileCoordinates;
 use ::exr::block::reader::ChunksReader;
 use ::exr::block::{BlockIndex, UncompressedBlock};
@@ -18,8 +19,9 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// A block that unpacks to more bytes than this is no picture's: 256 lines of 8,192 pixels with 128 channels.
-const MOST_BLOCK_BYTES: usize = 1 << 30;
+/// A block that unpacks to more bytes a pixel of the bound is no picture's: 16 channels in a picture of one block, more
+/// where it has several.
+const BLOCK_BYTES: usize = 64;
 
 /// Reads the colours of an EXR file: its channels `R`, `G`, `B`; else those of the one layer that has them
 /// (`albedo.R`), or of several the one called `Combined`; else `Y` alone as grey.
@@ -29,11 +31,12 @@ const MOST_BLOCK_BYTES: usize = 1 << 30;
 /// before memory is taken for it.
 ///
 /// # Errors
-/// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged, larger than [`MOST_PIXELS`], deep or
-/// without one such picture is [`Error::Input`].
-pub(crate) fn read(path: &Path) -> Result<Picture> {
+/// A file that cannot be opened is [`Error::Io`]; one that is cut short, damaged, deep, without one such picture, or with
+/// more pixels than are asked for, or without that than its size [suggests](Bound), is [`Error::Input`].
+pub(crate) fn read(path: &Path, pixels: Option<usize>) -> Result<Picture> {
     let file = File::open(path).map_err(Error::io("read", path))?;
-    picture(BufReader::new(file)).map_err(|why| Error::Input {
+    let bound = Bound::of(&file, path, pixels)?;
+    picture(BufReader::new(file), bound).map_err(|why| Error::Input {
         file: path.to_owned(),
         line: None,
         field: String::new(),
@@ -41,15 +44,15 @@ pub(crate) fn read(path: &Path) -> Result<Picture> {
     })
 }
 
-fn picture(file: impl Read + Seek) -> std::result::Result<Picture, String> {
+fn picture(file: impl Read + Seek, bound: Bound) -> std::result::Result<Picture, String> {
     let reader = ::exr::block::read(file, false).map_err(text)?;
-    reader.headers().iter().try_for_each(sane)?;
+    reader.headers().iter().try_for_each(|part| sane(part, bound))?;
     let chosen = choose(reader.headers())?;
     let part = &reader.headers()[chosen.part];
     if part.deep {
         return Err("deep data: flatten it first".into());
     }
-    let mut canvas = Canvas::new(part, chosen)?;
+    let mut canvas = Canvas::new(part, chosen, bound)?;
     let wanted = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
         block.layer == chosen.part && tile.is_largest_resolution_level()
     };
@@ -66,26 +69,24 @@ fn text(error: impl Display) -> String {
 }
 
 /// Whether what a header claims could be a picture's.
-fn sane(part: &Header) -> std::result::Result<(), String> {
-    area(part.layer_size)?;
-    area(part.shared_attributes.display_window.size)?;
+fn sane(part: &Header, bound: Bound) -> std::result::Result<(), String> {
+    area(part.layer_size, bound)?;
+    area(part.shared_attributes.display_window.size, bound)?;
     let (block, lines) = match part.blocks {
         BlockDescription::Tiles(tiles) => (tiles.tile_size.width(), tiles.tile_size.height()),
         BlockDescription::ScanLines => (part.layer_size.width(), part.compression.scan_lines_per_block()),
     };
     let bytes = block.saturating_mul(lines).saturating_mul(part.channels.bytes_per_pixel);
-    if bytes > MOST_BLOCK_BYTES {
-        return Err(format!("its blocks unpack to {bytes} bytes; at most {MOST_BLOCK_BYTES} are read"));
+    let most = bound.pixels.saturating_mul(BLOCK_BYTES);
+    if bytes > most {
+        return Err(format!("its blocks unpack to {bytes} bytes; at most {most} are read"));
     }
     Ok(())
 }
 
 /// The number of pixels of a window, if it has any and not too many.
-fn area(Vec2(width, height): Vec2<usize>) -> std::result::Result<usize, String> {
-    width
-        .checked_mul(height)
-        .filter(|pixels| (1..=MOST_PIXELS).contains(pixels))
-        .ok_or_else(|| format!("a window of {width} x {height} pixels; 1 to {MOST_PIXELS} are read"))
+fn area(Vec2(width, height): Vec2<usize>, bound: Bound) -> std::result::Result<usize, String> {
+    bound.area(width as u64, height as u64).map_err(|why| format!("a window of {why}"))
 }
 
 /// The picture as it fills.
@@ -99,12 +100,12 @@ struct Canvas {
 }
 
 impl Canvas {
-    fn new(part: &Header, chosen: Chosen) -> std::result::Result<Self, String> {
+    fn new(part: &Header, chosen: Chosen, bound: Bound) -> std::result::Result<Self, String> {
         let display = part.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let side = |n: usize| u32::try_from(n).map_err(text);
         // Zeroed memory that is never written to costs nothing: a header alone cannot fill it.
-        let pixels = vec![[0.0; 3]; area(display.size)?];
+        let pixels = vec![[0.0; 3]; area(display.size, bound)?];
         Ok(Self {
             picture: Picture { width: side(width)?, height: side(height)?, pixels },
             chosen,

@@ -96,9 +96,9 @@ impl Surfaces {
             self.materials.push(builtin.swap_remove(i));
             return Ok(self.materials.len() as u32 - 1);
         }
-        let near = names::near(&name, self.materials.iter().chain(&builtin).map(|material| material.name.as_str()));
-        let name = name.escape_debug();
-        Err(table.wrong("material", format!("no material is called \"{name}\"; near it: {}", near.join(", "))))
+        let known = self.materials.iter().chain(&builtin).map(|material| material.name.as_str());
+        let hint = names::hint(&name, known);
+        Err(table.wrong("material", format!("no material is called \"{}\"{hint}", name.escape_debug())))
     }
 
     fn quad(&mut self, [a, b, c, d]: [DVec3; 4], material: u32) {

@@ -91,8 +91,7 @@ impl<'a> Table<'a> {
     /// Refuses all names but these.
     pub(super) fn only(&self, known: &[&str]) -> Result<()> {
         let Some(key) = self.entries.keys().find(|key| !known.contains(&key.get_ref().as_ref())) else { return Ok(()) };
-        let near = names::near(key.get_ref(), known.iter().copied());
-        let message = format!("unknown field; near it: {}", near.join(", "));
+        let message = format!("unknown field{}", names::hint(key.get_ref(), known.iter().copied()));
         Err(self.source.error(Some(key.span().start), &self.path_of(key.get_ref()), message))
     }
 
@@ -226,12 +225,10 @@ impl<'a> Table<'a> {
     pub(super) fn choice(&self, name: &str, options: &[&str]) -> Result<Option<usize>> {
         let Some(text) = self.text(name, &format!("one of {}", options.join(", ")))? else { return Ok(None) };
         let refuse = || {
-            let near = names::near(&text, options.iter().copied()).join(", ");
+            let near = names::near(&text, options.iter().copied());
+            let near = if near.is_empty() { String::new() } else { format!("near it: {}; ", near.join(", ")) };
             let text = text.escape_debug();
-            self.wrong(
-                name,
-                format!("\"{text}\" is unknown; near it: {near}; one of {} is asked for", options.join(", ")),
-            )
+            self.wrong(name, format!("\"{text}\" is unknown; {near}one of {} is asked for", options.join(", ")))
         };
         options.iter().position(|option| *option == text).map(Some).ok_or_else(refuse)
     }
