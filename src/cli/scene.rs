@@ -1,7 +1,7 @@
 //! Options that say which scene, and how it is prepared.
 
 use super::terminal::say;
-use super::values::{exposure, finite, resolution};
+use super::values::{exposure, finite, positive, resolution};
 use super::waiting::while_long;
 use crate::base::colour;
 use crate::base::error::Error;
@@ -39,7 +39,7 @@ pub(super) struct SceneOptions {
     /// How shadow rays keep off their own surfaces: scaled, origin-push, t-min, ulps; none, which is wrong on purpose, shows why
     #[arg(long, value_name = "POLICY", default_value = "scaled", value_parser = offset)]
     offset: Offset,
-    /// How the point on a triangle light is drawn: area, solid-angle, projected, auto; references always take area
+    /// How the point on a triangle light is drawn: area, solid-angle, projected, auto; references take area, and projected where a light looks large or has a near end
     #[arg(long, value_name = "WAY", default_value = "auto", value_parser = light_sampling)]
     light_sampling: LightSampling,
     /// Leave out what the scene provably does not need

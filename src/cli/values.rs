@@ -25,6 +25,11 @@ pub(super) fn exposure(text: &str) -> Result<f32, String> {
         .ok_or_else(|| "a number above 0, from 1e-17 to 1e17, is right".into())
 }
 
+/// Parses a factor.
+pub(super) fn positive(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|x: &f32| x.is_normal() && *x > 0.0).ok_or_else(|| "a number above 0 is right".into())
+}
+
 /// Parses a number of CPU seconds.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
     text.parse()
