@@ -69,6 +69,8 @@ pub mod strategies;
 pub mod strategy;
 #[cfg(feature = "study")]
 mod study;
+#[cfg(feature = "gltf")]
+mod texture;
 pub mod tree;
 #[cfg(feature = "measure")]
 pub mod verify;

@@ -6,11 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every room and its floor, as in the design.
-const FLOORS: [(&str, u8); 25] = [
+const FLOORS: [(&str, u8); 26] = [
     ("base", 0),
     ("scene", 1),
     ("record", 1),
     ("image", 1),
+    ("texture", 1),
     ("sources", 2),
     ("visibility", 3),
     ("shading", 3),

@@ -2,14 +2,14 @@
 //!
 //! Its mean over the primitive's triangles, each weighing by its area, times the factor.
 
-use super::coverage;
 use super::images::Images;
 use super::mapping::Mapping;
 use super::mesh::{Piece, Place};
 use super::nodes::Placed;
-use super::picture::Picture;
 use super::reader::Reader;
 use crate::base::error::Result;
+use crate::texture::coverage;
+use crate::texture::picture::Picture;
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 

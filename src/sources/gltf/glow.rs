@@ -8,9 +8,9 @@
 //! Pieces darker than 1/500 of the texture's brightest texel reflect, as the rest of the material does: they are what is
 //! black around the lamps of a facade, but for the noise of JPEG.
 
-use super::coverage;
 use super::mapping::Mapping;
-use super::picture::Picture;
+use crate::texture::coverage;
+use crate::texture::picture::Picture;
 use glam::{DVec2, Vec3};
 
 /// Most pieces of all textured triangles, where they are cut at all.

@@ -4,15 +4,12 @@
 //! decoded is bounded by the bytes that are there, for one image and for all together.
 
 use super::looks::Image;
-use super::picture::Picture;
 use super::reader::Reader;
 use crate::base::error::Result;
-use ::image::codecs::jpeg::JpegDecoder;
-use ::image::codecs::png::PngDecoder;
-use ::image::{DynamicImage, ImageDecoder, ImageResult, Limits};
+use crate::texture::decode::{Decoded, decode};
+use crate::texture::picture::Picture;
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::Cursor;
 
 /// Most bytes of an image file.
 const LARGEST_FILE: u64 = 1 << 28;
@@ -65,28 +62,24 @@ impl<'r> Images<'r> {
         // Reading takes time too.
         self.left = self.left.saturating_sub(bytes.len() as u64);
         let most = (ALWAYS + FOR_A_BYTE * bytes.len() as u64).min(MOST).min(self.left);
-        let decode = if bytes.starts_with(b"\x89PNG") {
-            png
-        } else if bytes.starts_with(b"\xff\xd8\xff") {
-            jpeg
-        } else {
-            return Err(refuse(&format_args!(
-                "\"{}\" begins it; PNG and JPEG are read here; `gltf-transform png`, or `ktxdecompress`, makes PNG of it",
-                bytes[..bytes.len().min(8)].escape_ascii()
-            )));
-        };
-        let ([width, height], picture) = match decode(&bytes, most) {
-            Ok(Decoded::Picture(size, codes)) => (size, codes),
-            Ok(Decoded::TooLarge([width, height])) => {
+        let ([width, height], codes) = match decode(&bytes, most) {
+            Decoded::Picture(size, codes) => (size, codes),
+            Decoded::TooLarge([width, height]) => {
                 return Err(refuse(&format_args!(
                     "{width} x {height} texels in {} bytes are given; {most} texels are the most here; scale it down",
                     bytes.len()
                 )));
             }
-            Err(error) => return Err(refuse(&format_args!("this picture cannot be read: {error}"))),
+            Decoded::Foreign => {
+                return Err(refuse(&format_args!(
+                    "\"{}\" begins it; PNG and JPEG are read here; `gltf-transform png`, or `ktxdecompress`, makes PNG of it",
+                    bytes[..bytes.len().min(8)].escape_ascii()
+                )));
+            }
+            Decoded::Broken(error) => return Err(refuse(&format_args!("this picture cannot be read: {error}"))),
         };
         self.left -= u64::from(width) * u64::from(height);
-        Ok(Picture::new([width as usize, height as usize], picture))
+        Ok(Picture::new([width as usize, height as usize], codes))
     }
 
     fn bytes(&self, id: u32, entry: &Image) -> Result<Cow<'r, [u8]>> {
@@ -101,30 +94,4 @@ impl<'r> Images<'r> {
             }
         }
     }
-}
-
-enum Decoded {
-    /// Its size, and its codes.
-    Picture([u32; 2], Vec<u8>),
-    /// Its size.
-    TooLarge([u32; 2]),
-}
-
-fn png(bytes: &[u8], most: u64) -> ImageResult<Decoded> {
-    let mut limits = Limits::default();
-    // 16 bits in four channels.
-    limits.max_alloc = Some(8 * most + (1 << 20));
-    decoded(PngDecoder::with_limits(Cursor::new(bytes), limits)?, most)
-}
-
-fn jpeg(bytes: &[u8], most: u64) -> ImageResult<Decoded> {
-    decoded(JpegDecoder::new(Cursor::new(bytes))?, most)
-}
-
-fn decoded(decoder: impl ImageDecoder, most: u64) -> ImageResult<Decoded> {
-    let (width, height) = decoder.dimensions();
-    if u64::from(width) * u64::from(height) > most {
-        return Ok(Decoded::TooLarge([width, height]));
-    }
-    Ok(Decoded::Picture([width, height], DynamicImage::from_decoder(decoder)?.into_rgb8().into_raw()))
 }

@@ -3,19 +3,9 @@
 use super::looks::TextureInfo;
 use super::reader::Reader;
 use crate::base::error::Result;
+use crate::texture::coverage::Wrap;
 use glam::{DMat2, DVec2};
 use std::fmt::Display;
-
-/// What a texture is beyond its edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wrap {
-    /// The same again.
-    Repeat,
-    /// The same again, every other time mirrored.
-    Mirror,
-    /// Its outermost texels, for ever.
-    Clamp,
-}
 
 /// Which image a texture shows, and where.
 #[derive(Clone, Copy)]

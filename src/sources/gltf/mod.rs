@@ -34,7 +34,6 @@
 mod accessor;
 mod albedo;
 mod camera;
-mod coverage;
 mod document;
 mod extensions;
 mod extras;
@@ -49,7 +48,6 @@ mod material;
 mod mesh;
 mod nodes;
 mod notes;
-mod picture;
 mod planes;
 mod read;
 mod reader;

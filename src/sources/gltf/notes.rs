@@ -106,7 +106,7 @@ pub(super) fn blender(document: &Document, divided: bool) -> Option<String> {
     let lamps = document.extensions.punctual.lights.len();
     (by_blender && lamps > 0 && !divided).then(|| {
         format!(
-            "lamps that Blender's exporter wrote: {lamps}; unless its lighting mode was `Unitless`, each is 683 times as \
+            "lamps that Blender's exporter wrote: {lamps}; unless its lighting mode was `Unitless`, as scenes/from_blender.py has it, each is 683 times as \
              bright beside emissive materials as in Blender: `--lamps-divided-by 683` mends that"
         )
     })

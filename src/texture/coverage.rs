@@ -3,7 +3,6 @@
 //! Each texel is a rectangle of one colour; the triangle is cut along their edges, and each part weighs by its area. A
 //! triangle over more cells than it may look at is held against the next level of coarser ones.
 
-use super::mapping::Wrap;
 use super::picture::Picture;
 use glam::{DVec2, Vec3};
 
@@ -14,6 +13,17 @@ const FARTHEST: f64 = 1e6;
 /// Samples along each side of a triangle that is a line: 64 in all.
 const ALONG: u32 = 8;
 
+/// What a texture is beyond its edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wrap {
+    /// The same again.
+    Repeat,
+    /// The same again, every other time mirrored.
+    Mirror,
+    /// Its outermost texels, for ever.
+    Clamp,
+}
+
 /// A cell's extent along one axis.
 struct Span {
     from: f64,
@@ -23,7 +33,7 @@ struct Span {
 
 /// The mean over a triangle whose corners are in widths and heights from the image's upper left corner, looking at
 /// about `most` cells, 1 or more; corners are finite.
-pub(super) fn mean(picture: &Picture, wrap: [Wrap; 2], corners: [DVec2; 3], most: usize) -> Vec3 {
+pub(crate) fn mean(picture: &Picture, wrap: [Wrap; 2], corners: [DVec2; 3], most: usize) -> Vec3 {
     if corners.iter().any(|corner| corner.abs().max_element() > FARTHEST) {
         return picture.mean();
     }

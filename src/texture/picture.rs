@@ -14,9 +14,9 @@ const MOST_TEXELS: usize = 1 << 22;
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|code| srgb_decode(code as f32 / 255.0)));
 
 /// An image in linear Rec. 709.
-pub(super) struct Picture {
+pub(crate) struct Picture {
     /// Texels across and down.
-    pub(super) size: [usize; 2],
+    pub(crate) size: [usize; 2],
     /// The levels that are kept, the finest first, the last of one cell.
     levels: Vec<Level>,
     brightest: Vec3,
@@ -50,7 +50,7 @@ impl Level {
 
 impl Picture {
     /// The image of these 8-bit sRGB codes, three for each texel, row by row from the top; neither side is 0.
-    pub(super) fn new(size: [usize; 2], codes: Vec<u8>) -> Self {
+    pub(crate) fn new(size: [usize; 2], codes: Vec<u8>) -> Self {
         let brightest = codes.chunks_exact(3).fold([0u8; 3], |most, texel| [0, 1, 2].map(|c| most[c].max(texel[c])));
         let brightest = Vec3::from_array(brightest.map(|code| LINEAR[usize::from(code)]));
         let mut levels = vec![Level { shift: 0, across: size[0], cells: Cells::Codes(codes) }];
@@ -66,27 +66,27 @@ impl Picture {
     }
 
     /// Per channel, what its brightest texel has.
-    pub(super) fn brightest(&self) -> Vec3 {
+    pub(crate) fn brightest(&self) -> Vec3 {
         self.brightest
     }
 
     /// The mean of all texels.
-    pub(super) fn mean(&self) -> Vec3 {
+    pub(crate) fn mean(&self) -> Vec3 {
         self.levels.last().map_or(Vec3::ZERO, |level| level.get(0, 0))
     }
 
     /// The levels that are kept, the finest first, as binary logarithms of a cell's side in texels.
-    pub(super) fn shifts(&self) -> impl Iterator<Item = u32> + Clone {
+    pub(crate) fn shifts(&self) -> impl Iterator<Item = u32> + Clone {
         self.levels.iter().map(|level| level.shift)
     }
 
     /// Cells along each side of a level.
-    pub(super) fn cells(&self, shift: u32) -> [usize; 2] {
+    pub(crate) fn cells(&self, shift: u32) -> [usize; 2] {
         count(self.size, shift)
     }
 
     /// The mean of a cell of a level that is kept; `x` and `y` are below [`cells`](Self::cells).
-    pub(super) fn cell(&self, shift: u32, x: usize, y: usize) -> Vec3 {
+    pub(crate) fn cell(&self, shift: u32, x: usize, y: usize) -> Vec3 {
         let finest = self.levels[0].shift;
         self.levels[(shift - finest) as usize].get(x, y)
     }
