@@ -53,7 +53,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "X", default_value_t = PIXELS_PER_DEGREE, value_parser = pixels_per_degree)]
     ppd: f64,
     /// Most pixels of each picture, whatever its file's size; by default 8,388,608, or 64 a byte of a larger file.
-    /// The comparison takes about 150 bytes of memory a pixel
+    /// The comparison takes 120 to 150 bytes of memory a pixel
     #[arg(long, value_name = "N", value_parser = most_pixels)]
     max_pixels: Option<usize>,
     /// Exit code 1 if the mean of the metric is above this

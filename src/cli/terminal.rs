@@ -83,9 +83,9 @@ mod tests {
     #[test]
     fn parts_that_find_no_room_go_on_below() {
         let parts = ["  name      1.0", "  2.0  ", "what it is, in words"].map(str::to_owned);
-        assert_eq!(within(&parts, 80), "  name      1.0   2.0 what it is, in words\n");
+        assert_eq!(within(&parts, 80), "  name      1.0   2.0   what it is, in words\n");
         assert_eq!(within(&parts, 30), "  name      1.0   2.0\n      what it is, in words\n");
-        assert_eq!(within(&parts, 20), "  name      1.0\n      2.0\n      what it is,\n        in words\n");
+        assert_eq!(within(&parts, 20), "  name      1.0\n      2.0\n      what it is, in\n        words\n");
     }
 
     #[test]

@@ -98,7 +98,7 @@ fn record() -> RunRecord {
                     Reading { at: 0.01, value: value(0.0), how: Read::Never },
                 ],
                 error_at: vec![Reading { at: 1.0, value: value(0.5), how: Read::TooSoon }],
-                rank: Some([2, 4]),
+                rank: Some([1, 1]),
                 letters: "ab".to_owned(),
                 times_oracle: Some(value(2.5)),
                 receivers: Some(256),
