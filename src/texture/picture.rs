@@ -7,9 +7,6 @@ use crate::base::colour::srgb_decode;
 use glam::Vec3;
 use std::sync::LazyLock;
 
-/// A level of more cells is not kept, be they texels: 2^22 take 48 MiB.
-const MOST_TEXELS: usize = 1 << 22;
-
 /// What the 8-bit codes of sRGB stand for.
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|code| srgb_decode(code as f32 / 255.0)));
 
@@ -49,15 +46,16 @@ impl Level {
 }
 
 impl Picture {
-    /// The image of these 8-bit sRGB codes, three for each texel, row by row from the top; neither side is 0.
-    pub(crate) fn new(size: [usize; 2], codes: Vec<u8>) -> Self {
+    /// The image of these 8-bit sRGB codes, three for each texel, row by row from the top; neither side is 0. A level of more
+    /// than `most` cells is not kept, be they texels: a cell takes 12 bytes, a texel 3.
+    pub(crate) fn new(size: [usize; 2], codes: Vec<u8>, most: usize) -> Self {
         let brightest = codes.chunks_exact(3).fold([0u8; 3], |most, texel| [0, 1, 2].map(|c| most[c].max(texel[c])));
         let brightest = Vec3::from_array(brightest.map(|code| LINEAR[usize::from(code)]));
         let mut levels = vec![Level { shift: 0, across: size[0], cells: Cells::Codes(codes) }];
         while let Some(finer) = levels.last().filter(|level| count(size, level.shift).iter().any(|&cells| cells > 1)) {
             let coarser = coarser(size, finer);
             let [across, down] = count(size, finer.shift);
-            if across * down > MOST_TEXELS {
+            if across * down > most {
                 levels.clear();
             }
             levels.push(coarser);

@@ -356,6 +356,28 @@ fn a_small_file_does_not_unfold_into_gigabytes() {
     println!("{} bytes of PNG, {held} bytes held", black.len());
     assert_eq!((scene.lights().len(), scene.surfaces().len()), (1, 4));
     assert!(held < 128 << 20, "{held} bytes");
+    // And again and again: each image decoded for itself, as far as a file of this size may.
+    let many = |count: usize| {
+        let mut file = file.clone();
+        for _ in 1..count {
+            let image = file.json["images"][0].clone();
+            let image = file.push("images", image);
+            let texture = file.push("textures", json!({ "source": image }));
+            let mut material = file.json["materials"][1].clone();
+            material["emissiveTexture"]["index"] = json!(texture);
+            let mut primitive = file.json["meshes"][1]["primitives"][0].clone();
+            primitive["material"] = json!(file.push("materials", material));
+            let mesh = file.mesh(primitive);
+            file.node(json!({ "mesh": mesh }));
+        }
+        file
+    };
+    let (held, scene) = crate::peak::most(|| many(10).scene());
+    assert_eq!(scene.surfaces().len(), 2 + 10 * 2);
+    assert!(held < 256 << 20, "{held} bytes");
+    let (held, error) = crate::peak::most(|| many(30).read().expect_err("refused").to_string());
+    assert!(error.contains("scale it down") || error.contains("scale them down"), "{error}");
+    assert!(held < 256 << 20, "{held} bytes");
 }
 
 /// PNG's check of a chunk (ISO 3309).

@@ -266,7 +266,7 @@ fn what_is_not_used_is_told_once() {
     file.json["extensionsUsed"] = json!(["KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_clearcoat"]);
     let scene = file.scene();
     for said in [
-        "base colour textures of materials that cannot be read: 2; the factor alone is the albedo (test.glb: `textures[0].source`: is missing",
+        "base colour textures of materials that cannot be read: 1; the factor alone is the albedo (test.glb: `textures[0].source`: is missing",
         "normal and occlusion textures of materials: 2;",
         "metallic materials, as glTF has them unless a `metallicFactor` says otherwise: 1;",
         "materials that blend or mask: 2;",

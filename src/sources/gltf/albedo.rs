@@ -16,6 +16,8 @@ use std::collections::HashMap;
 /// Most cells of textures that are looked at, in all and for a triangle.
 const MOST_CELLS: usize = 1 << 24;
 const MOST_CELLS_EACH: usize = 1 << 8;
+/// Most cells of a level of an image, of which one is held at a time.
+const MOST_KEPT: usize = 1 << 22;
 
 /// A primitive with a textured base colour, at the first node that shows it.
 struct Base<'a> {
@@ -65,7 +67,7 @@ impl<'a> Bases<'a> {
         let mut found: HashMap<usize, Vec3> = HashMap::new();
         let cells = (MOST_CELLS / self.triangles.max(1)).clamp(1, MOST_CELLS_EACH);
         for run in order.chunk_by(|&a, &b| self.all[a].mapping.image == self.all[b].mapping.image) {
-            match images.picture(self.all[run[0]].mapping.image) {
+            match images.picture(self.all[run[0]].mapping.image, MOST_KEPT) {
                 Ok(picture) => {
                     for &i in run {
                         found.insert(i, self.all[i].mean(reader, &picture, cells)?);

@@ -48,8 +48,8 @@ impl<'r> Images<'r> {
         (self.left, self.room) = (self.left + more, self.room - more);
     }
 
-    /// Decodes the image of that number, which is in the document.
-    pub(super) fn picture(&mut self, id: u32) -> Result<Picture> {
+    /// Decodes the image of that number, which is in the document, and keeps levels of at most so many cells.
+    pub(super) fn picture(&mut self, id: u32, most_cells: usize) -> Result<Picture> {
         let entry = &self.reader.document.images[id as usize];
         let refuse = |message: &dyn Display| self.reader.wrong(format_args!("images[{id}]"), message);
         if self.left == 0 {
@@ -79,7 +79,7 @@ impl<'r> Images<'r> {
             Decoded::Broken(error) => return Err(refuse(&format_args!("this picture cannot be read: {error}"))),
         };
         self.left -= u64::from(width) * u64::from(height);
-        Ok(Picture::new([width as usize, height as usize], codes))
+        Ok(Picture::new([width as usize, height as usize], codes, most_cells))
     }
 
     fn bytes(&self, id: u32, entry: &Image) -> Result<Cow<'r, [u8]>> {

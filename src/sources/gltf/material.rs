@@ -19,6 +19,10 @@ use std::collections::{HashMap, HashSet};
 /// How far above 1, or below 0, a base colour may lie: exporters compute them in f32, and in other spaces of colour.
 const HAIR: f64 = 0.01;
 
+/// Most cells of a level of all emissive textures, and of one: 2^23 take 128 MiB.
+const MOST_KEPT: usize = 1 << 23;
+const MOST_KEPT_EACH: usize = 1 << 22;
+
 /// What a primitive is covered with.
 #[derive(Clone, Copy)]
 pub(super) enum Cover {
@@ -71,20 +75,31 @@ impl Palette {
         }
         let mut palette =
             Self { covers: Vec::new(), materials: Vec::new(), own: HashMap::new(), glows: Glows::default() };
+        let glowing = entries.iter().zip(&used).filter(|(entry, used)| **used && entry.emissive_texture.is_some());
+        let most_cells = (MOST_KEPT / glowing.count().max(1)).min(MOST_KEPT_EACH);
         let mut images = Images::new(reader);
-        let mut pictures = HashMap::new();
+        let (mut kept, mut pictures) = (Vec::new(), HashMap::new());
         for (id, entry) in entries.iter().enumerate() {
-            let cover = palette.one(reader, id, entry, used[id], &mut images, &mut pictures);
+            let cover = palette.one(reader, id, entry, used[id], &mut |image| {
+                if let Some(&picture) = pictures.get(&image) {
+                    return Ok(picture);
+                }
+                kept.push(images.picture(image, most_cells)?);
+                pictures.insert(image, kept.len() - 1);
+                Ok(kept.len() - 1)
+            });
             // What nothing shows may say what it likes.
             palette.covers.push(if used[id] { cover? } else { cover.unwrap_or(None) });
         }
+        palette.glows.pictures = kept;
         palette.plan(reader, placed)?;
         let (mut bases, mut without) = (Bases::default(), 0);
         for node in firsts {
             reader.pieces(std::slice::from_ref(node), &mut |piece| {
                 let glow = match palette.cover(reader, piece)? {
                     Cover::Glowing { glow, .. } => Some(palette.glows.all[glow].mapping),
-                    _ => None,
+                    Cover::Reflector(_) => None,
+                    Cover::Emitter { .. } => return Ok(()),
                 };
                 let mapped = [glow, bases.add(reader, node, piece)];
                 without += usize::from(mapped.iter().flatten().any(|mapping| !piece.has_coordinates(mapping)));
@@ -109,8 +124,7 @@ impl Palette {
         id: usize,
         entry: &Entry,
         used: bool,
-        images: &mut Images,
-        pictures: &mut HashMap<u32, usize>,
+        picture: &mut dyn FnMut(u32) -> Result<usize>,
     ) -> Result<Option<Cover>> {
         let radiance = radiance(reader, id, entry)?;
         let albedo = albedo(reader, id, entry)?;
@@ -121,14 +135,7 @@ impl Palette {
             Some(_) if !used => return Ok(None),
             Some(texture) => {
                 let mapping = reader.mapping(texture, &format_args!("materials[{id}].emissiveTexture"))?;
-                let picture = match pictures.get(&mapping.image) {
-                    Some(&picture) => picture,
-                    None => {
-                        self.glows.pictures.push(images.picture(mapping.image)?);
-                        pictures.insert(mapping.image, self.glows.pictures.len() - 1);
-                        self.glows.pictures.len() - 1
-                    }
-                };
+                let picture = picture(mapping.image)?;
                 self.glows.all.push(Glow { picture, mapping, radiance });
                 Some(self.glows.all.len() - 1)
             }
