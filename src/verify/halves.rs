@@ -27,7 +27,7 @@ mod tests {
         let value = |i: usize| {
             let first = of((i % 7) as f64);
             // A light that gives each point the same, too.
-            let second = if shared || i % 2 == 0 { first } else { first * 1.01 };
+            let second = if shared || i.is_multiple_of(2) { first } else { first * 1.01 };
             let marks = [i as u64, if shared { i as u64 } else { i as u64 + 1 }];
             Exact { sum: DVec3::ONE, halves: [first, second], marks, rays: 2 }
         };
