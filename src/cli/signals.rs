@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::mpsc;
 
-/// Hears each wish to stop: Ctrl-C, and where there are such signals TERM and HUP.
+/// Hears each wish to stop: Ctrl-C, and where there are such signals TERM, QUIT and HUP.
 ///
 /// A HUP that was switched off before the program began (`nohup`) stays off.
 ///
@@ -11,10 +11,11 @@ use std::sync::mpsc;
 /// What the system says where it cannot be heard.
 #[cfg(unix)]
 pub(super) fn wishes() -> io::Result<mpsc::Receiver<()>> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     use signal_hook::iterator::Signals;
 
-    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(signal));
+    let heard =
+        [SIGINT, SIGTERM, SIGQUIT, SIGHUP].into_iter().filter(|&signal| signal != SIGHUP || !is_ignored(signal));
     let mut signals = Signals::new(heard)?;
     let (send, receive) = mpsc::channel();
     std::thread::spawn(move || signals.forever().try_for_each(|_| send.send(())));

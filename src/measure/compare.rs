@@ -107,7 +107,7 @@ fn nothing_lit(target: &Target<'_>, truth: &Truth) -> Option<String> {
         (_, 0) => "the scene has no lights".to_owned(),
         _ => format!("none of {lights} lights reaches any of the {points} visible points that were looked at"),
     };
-    Some(format!("nothing can be measured: {why}; every strategy that adds nothing is right here"))
+    Some(format!("nothing can be measured: {why}"))
 }
 
 /// A scene on which nothing was measured.

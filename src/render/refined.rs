@@ -14,7 +14,9 @@ use crate::base::colour::luminance;
 use crate::base::random::Stream;
 use crate::base::rel_mse::RelMse;
 use crate::scene::light::{Kind, Light};
+use crate::scene::light_sampling::LightSampling;
 use crate::scene::receiver::Receiver;
+use crate::shading::by_angle::seen;
 use crate::shading::importance::importance;
 use crate::visibility::stage::Stage;
 use glam::DVec3;
@@ -120,11 +122,22 @@ struct Open<'a> {
 
 impl<'a> Open<'a> {
     fn of(light: &'a Light, at: &Receiver) -> Option<Self> {
-        let most = f64::from(importance(light, at));
+        let most = most(light, at);
         let grey = f64::from(luminance(light.colour));
         let radiance = (light.colour * at.albedo).as_dvec3() * (most / grey * FRAC_1_PI);
         (most > 0.0).then_some(Self { light, most, radiance })
     }
+}
+
+/// What it could add with nothing in between: by its centroid, and where it looks large or has a near end in closed form,
+/// since the centroid of a light of kilometres says nothing of it.
+fn most(light: &Light, at: &Receiver) -> f64 {
+    let by_centroid = f64::from(importance(light, at));
+    if by_centroid > 0.0 && LightSampling::Auto.settled(light, at) != LightSampling::Area {
+        let irradiance = seen(light, at).irradiance(at.normal.as_dvec3());
+        return by_centroid.max(irradiance * f64::from(luminance(light.colour)));
+    }
+    by_centroid
 }
 
 /// What a look at a light shows.

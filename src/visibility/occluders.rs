@@ -39,11 +39,15 @@ impl Occluders {
             .map(|(surface, i)| (surface.corners, Met::Surface(i)))
             .chain(emitters.map(|(light, id)| (light.corners(), Met::Light(id))))
             .unzip();
-        let bvh = bvh::build(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))), Asked::Rays);
+        let boxes = || corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c)));
+        let (low, high) = scene.bounds();
+        let ends = low.abs().max(high.abs()).max(scene.camera().position().abs());
+        let reach = ends.max_element();
+        let bvh = bvh::build(boxes(), if reach.is_finite() { reach } else { 0.0 }, Asked::Rays);
         let order = || bvh.primitive_indices.iter().map(|&i| i as usize);
         let triangles = order().map(|i| Triangle::new(corners[i])).collect();
         let met = order().map(|i| met[i]).collect();
-        let all = bvh::around(corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))));
+        let all = bvh::around(boxes());
         let rounding = if corners.is_empty() { 0.0 } else { offset::rounding(all.diagonal().into()) };
         Self { bvh, triangles, met, rounding }
     }
@@ -75,7 +79,13 @@ impl Occluders {
     /// Whether nothing lies on the segment, but what it passes over.
     #[inline]
     pub fn visible(&self, segment: &Segment) -> bool {
-        let (free, last) = pulp::Arch::new().dispatch(Way { occluders: self, segment });
+        let arch = pulp::Arch::new();
+        // Compiled for each axis that a ray may mostly go along: looked up for each triangle, it made a ray 10 % slower.
+        let (free, last) = match segment.along.abs().max_position() {
+            0 => arch.dispatch(Way::<0> { occluders: self, segment }),
+            1 => arch.dispatch(Way::<1> { occluders: self, segment }),
+            _ => arch.dispatch(Way::<2> { occluders: self, segment }),
+        };
         // Asked of the one triangle that ended the way: asked within the loop, it made a ray 15 % slower.
         free || (segment.passes_over(&self.triangles[last.0], last.1, self.rounding) && self.visible_beyond(segment))
     }
@@ -86,9 +96,9 @@ impl Occluders {
     fn visible_beyond(&self, segment: &Segment) -> bool {
         let &Segment { origin, along, t_min, t_max, .. } = segment;
         let ray = ray(origin, along, t_min, t_max);
-        let view = View::new(&ray);
+        let meet = Triangle::any_meet(&ray);
         self.bvh.ray_traverse_miss(ray, |ray, i| {
-            let t = self.triangles[i].meet(ray, &view);
+            let t = meet(&self.triangles[i], ray);
             let passed = t < ray.tmax && segment.passes_over(&self.triangles[i], t, self.rounding);
             if passed { f32::INFINITY } else { t }
         })
@@ -99,8 +109,8 @@ impl Occluders {
         let ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
         // A fresh record: a used one would turn a miss of the root into a hit.
         let mut hit = RayHit::none();
-        let view = View::new(&ray);
-        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| self.triangles[i].meet(ray, &view)) {
+        let meet = Triangle::any_meet(&ray);
+        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| meet(&self.triangles[i], ray)) {
             return None;
         }
         let index = hit.primitive_id as usize;
@@ -110,12 +120,12 @@ impl Occluders {
 }
 
 /// The way of a ray to what ends it, compiled for each instruction set.
-struct Way<'a> {
+struct Way<'a, const DEEP: usize> {
     occluders: &'a Occluders,
     segment: &'a Segment,
 }
 
-impl pulp::NullaryFnOnce for Way<'_> {
+impl<const DEEP: usize> pulp::NullaryFnOnce for Way<'_, DEEP> {
     /// Whether it is free, and the last triangle asked with its distance.
     type Output = (bool, (usize, f32));
 
@@ -125,7 +135,7 @@ impl pulp::NullaryFnOnce for Way<'_> {
         let Occluders { bvh, triangles, .. } = self.occluders;
         let mut last = (0, f32::INFINITY);
         let ray = ray(origin, along, t_min, t_max);
-        let view = View::new(&ray);
+        let view = View::<DEEP>::new(&ray);
         let free = bvh.ray_traverse_miss(ray, |ray, i| {
             let t = triangles[i].meet(ray, &view);
             last = (i, t);

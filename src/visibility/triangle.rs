@@ -21,25 +21,21 @@ pub(super) struct Triangle {
     normal: Vec3A,
 }
 
-/// How a ray sees corners.
+/// How a ray sees corners whose largest component is that of the axis `DEEP`, 0 to 2.
 #[derive(Clone, Copy)]
-pub(super) struct View {
-    /// Two axes across, and the axis of its largest component.
-    axes: [usize; 3],
-    /// Its start on these axes, in metres.
-    origin: [f32; 3],
-    /// How far it goes on the two axes across for each metre of depth.
+pub(super) struct View<const DEEP: usize> {
+    /// How far it goes on the next two axes for each metre of depth.
     lean: [f32; 2],
 }
 
-impl View {
+impl<const DEEP: usize> View<DEEP> {
+    /// The two axes across.
+    const ACROSS: [usize; 2] = [(DEEP + 1) % 3, (DEEP + 2) % 3];
+
     /// That of a ray whose direction is not zero.
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
-        let deep = ray.direction.abs().max_position();
-        let axes = [(deep + 1) % 3, (deep + 2) % 3, deep];
-        let lean = [ray.direction[axes[0]] / ray.direction[deep], ray.direction[axes[1]] / ray.direction[deep]];
-        Self { axes, origin: axes.map(|axis| ray.origin[axis]), lean }
+        Self { lean: Self::ACROSS.map(|axis| ray.direction[axis] / ray.direction[DEEP]) }
     }
 }
 
@@ -65,13 +61,23 @@ impl Triangle {
         normal.dot(corner - origin) / normal.dot(direction)
     }
 
+    /// [`meet`](Self::meet), whatever the direction of the ray.
+    pub(super) fn any_meet(ray: &Ray) -> impl Fn(&Self, &Ray) -> f32 + use<> {
+        let (deep, x, y, z) = (ray.direction.abs().max_position(), View::new(ray), View::new(ray), View::new(ray));
+        move |triangle, ray| match deep {
+            0 => triangle.meet::<0>(ray, &x),
+            1 => triangle.meet::<1>(ray, &y),
+            _ => triangle.meet::<2>(ray, &z),
+        }
+    }
+
     /// Where a ray meets it, in multiples of the ray's direction within its ends; infinity if nowhere.
     #[inline(always)]
-    pub(super) fn meet(&self, ray: &Ray, view: &View) -> f32 {
-        let [across, up, deep] = view.axes.map(|axis| self.axes[axis]);
-        let depth = deep - view.origin[2];
-        let x = (across - view.origin[0]) - depth * view.lean[0];
-        let y = (up - view.origin[1]) - depth * view.lean[1];
+    pub(super) fn meet<const DEEP: usize>(&self, ray: &Ray, view: &View<DEEP>) -> f32 {
+        let from = |axis: usize| self.axes[axis] - ray.origin[axis];
+        let ([across, up], depth) = (View::<DEEP>::ACROSS, from(DEEP));
+        let x = from(across) - depth * view.lean[0];
+        let y = from(up) - depth * view.lean[1];
         // Of the edge across from each corner.
         let [x1, x2] = [rotated(x), rotated(rotated(x))];
         let [y1, y2] = [rotated(y), rotated(rotated(y))];
@@ -80,20 +86,19 @@ impl Triangle {
         if below != 0 && above != 0 {
             return f32::INFINITY;
         }
-        if below | above != ALL && !holds(x, y) {
-            return f32::INFINITY;
-        }
-        let t = self.at(ray, view, depth, edges);
+        let edges = if below | above == ALL { Some(edges) } else { exact(x, y) };
+        let Some(edges) = edges else { return f32::INFINITY };
+        let t = self.at(ray, depth, ray.direction[DEEP], edges);
         if t >= ray.tmin && t <= ray.tmax { t } else { f32::INFINITY }
     }
 
     /// Where a ray that meets it does so: on its plane, and no nearer and no farther than its corners.
     #[inline(always)]
-    fn at(&self, ray: &Ray, view: &View, depth: Vec3A, edges: Vec3A) -> f32 {
+    fn at(&self, ray: &Ray, depth: Vec3A, along: f32, edges: Vec3A) -> f32 {
         let [x, y, z] = self.axes;
         let corner = Vec3A::new(x[0], y[0], z[0]) - ray.origin;
         let t = self.normal.dot(corner) / self.normal.dot(ray.direction);
-        let of_a_metre = 1.0 / ray.direction[view.axes[2]];
+        let of_a_metre = 1.0 / along;
         let ends = [depth.min_element() * of_a_metre, depth.max_element() * of_a_metre];
         if (ends[0].min(ends[1])..=ends[0].max(ends[1])).contains(&t) {
             return t;
@@ -113,13 +118,15 @@ fn rotated(v: Vec3A) -> Vec3A {
     v.yzx()
 }
 
-/// Whether the origin lies in the triangle of these corners, its edges included, and that has an area; exactly.
+/// The edge functions of these corners, exact but for their last digits, where the origin lies in the triangle, its edges
+/// included, and that has an area.
 #[cold]
 #[inline(never)]
-fn holds(x: Vec3A, y: Vec3A) -> bool {
+fn exact(x: Vec3A, y: Vec3A) -> Option<Vec3A> {
     let (x, y) = (x.to_array().map(f64::from), y.to_array().map(f64::from));
     let edge = |i: usize, j: usize| x[i] * y[j] - y[i] * x[j];
     let edges = [edge(1, 2), edge(2, 0), edge(0, 1)];
     let (below, above) = (edges.iter().any(|&e| e < 0.0), edges.iter().any(|&e| e > 0.0));
-    below != above
+    // As shares of the area, so that none underflows.
+    (below != above).then(|| Vec3A::from_array(edges.map(|e| (e / edges.iter().sum::<f64>()) as f32)))
 }
