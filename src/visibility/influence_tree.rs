@@ -22,7 +22,7 @@ impl InfluenceTree {
     /// Builds the hierarchy over some lights of a scene.
     pub fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
         let (volumes, everywhere) = cutoff.volumes(scene, lights);
-        let bvh = bvh::build(volumes.iter().map(|(volume, _)| volume.bounds()), 0.0, Asked::Points);
+        let bvh = bvh::build(volumes.iter().map(|(volume, _)| volume.bounds()), Asked::Points);
         let volumes = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
         Self { bvh, volumes, everywhere }
     }

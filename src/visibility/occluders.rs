@@ -40,10 +40,7 @@ impl Occluders {
             .chain(emitters.map(|(light, id)| (light.corners(), Met::Light(id))))
             .unzip();
         let boxes = || corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c)));
-        let (low, high) = scene.bounds();
-        let ends = low.abs().max(high.abs()).max(scene.camera().position().abs());
-        let reach = ends.max_element();
-        let bvh = bvh::build(boxes(), if reach.is_finite() { reach } else { 0.0 }, Asked::Rays);
+        let bvh = bvh::build(boxes(), Asked::Rays);
         let order = || bvh.primitive_indices.iter().map(|&i| i as usize);
         let triangles = order().map(|i| Triangle::new(corners[i])).collect();
         let met = order().map(|i| met[i]).collect();

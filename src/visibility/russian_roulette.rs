@@ -33,7 +33,7 @@ impl RussianRoulette {
     /// Builds the hierarchy over some lights of a scene.
     pub(crate) fn new(scene: &Scene, lights: &[LightId], cutoff: Cutoff) -> Self {
         let (volumes, everywhere) = cutoff.volumes(scene, lights);
-        let bvh = bvh::build(volumes.iter().map(|(volume, _)| (volume.centre, volume.centre)), 0.0, Asked::Points);
+        let bvh = bvh::build(volumes.iter().map(|(volume, _)| (volume.centre, volume.centre)), Asked::Points);
         let volumes: Vec<_> = bvh.primitive_indices.iter().map(|&i| volumes[i as usize]).collect();
         let mut widest2 = vec![0.0f32; bvh.nodes.len()];
         for node_id in from_the_root(&bvh).into_iter().rev() {
