@@ -89,6 +89,8 @@ mod promises {
     mod alone;
     #[path = "common/counting.rs"]
     mod counting;
+    #[path = "common/pictures.rs"]
+    mod pictures;
 
     mod charged;
     mod contract;

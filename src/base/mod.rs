@@ -12,6 +12,8 @@ pub(crate) mod file;
 #[cfg(feature = "measure")]
 pub(crate) mod interval;
 pub(crate) mod names;
+#[cfg(feature = "gltf")]
+pub(crate) mod polygon;
 pub mod random;
 #[cfg(feature = "measure")]
 pub(crate) mod ranking;

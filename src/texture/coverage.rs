@@ -4,6 +4,7 @@
 //! triangle over more cells than it may look at is held against the next level of coarser ones.
 
 use super::picture::Picture;
+use crate::base::polygon::above;
 use glam::{DVec2, Vec3};
 
 /// Triangles of less than this part of their extent's square are lines or points.
@@ -146,18 +147,7 @@ fn cut(polygon: &[DVec2], axis: DVec2, from: f64, to: f64) -> Vec<DVec2> {
 
 /// What of a convex polygon lies where `axis` has at least `least`.
 fn half(polygon: &[DVec2], axis: DVec2, least: f64) -> Vec<DVec2> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (i, &here) in polygon.iter().enumerate() {
-        let next = polygon[(i + 1) % polygon.len()];
-        let (mine, its) = (here.dot(axis) - least, next.dot(axis) - least);
-        if mine >= 0.0 {
-            kept.push(here);
-        }
-        if (mine >= 0.0) != (its >= 0.0) {
-            kept.push(here + (next - here) * (mine / (mine - its)));
-        }
-    }
-    kept
+    above(polygon, |corner| corner.dot(axis) - least)
 }
 
 fn twice_area(polygon: &[DVec2]) -> f64 {

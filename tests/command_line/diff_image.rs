@@ -2,6 +2,7 @@
 //! that would mean nothing is refused.
 #![cfg(feature = "cli")]
 
+use crate::pictures::{noisy, picture, reference};
 use assert_cmd::Command;
 use citylights::image::{self, Picture};
 use predicates::str::contains;
@@ -18,23 +19,6 @@ const MAGMA: [(f64, [u8; 3]); 6] = [
     (200.0, [253, 152, 105]),
     (255.0, [252, 253, 191]),
 ];
-
-const WIDTH: u32 = 24;
-const HEIGHT: u32 = 16;
-
-/// A picture of values that differ from pixel to pixel and channel to channel.
-fn picture(value: impl Fn(usize, usize) -> f32) -> Picture {
-    let pixels = (0..(WIDTH * HEIGHT) as usize).map(|i| [0, 1, 2].map(|c| value(i, c))).collect();
-    Picture { width: WIDTH, height: HEIGHT, pixels }
-}
-
-fn reference() -> Picture {
-    picture(|i, c| 0.1 + (i % 7) as f32 * 0.3 + c as f32 * 0.05)
-}
-
-fn noisy() -> Picture {
-    picture(|i, c| reference().pixels[i][c] * (1.0 + 0.2 * ((i * 5 + c * 3) % 11) as f32 / 11.0))
-}
 
 /// Writes pictures to a folder of their own.
 struct Folder(tempfile::TempDir);

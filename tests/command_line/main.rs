@@ -14,6 +14,10 @@
 //! | `said` | what is said of a file is text, fits the terminal, and names what is near alone |
 
 mod bounds;
+#[cfg(feature = "cli")]
+#[path = "../common/pictures.rs"]
+mod pictures;
+
 mod cli;
 mod diff_image;
 mod export;

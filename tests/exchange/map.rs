@@ -1,25 +1,9 @@
 //! Maps of errors have the published colours, and what is left out of them reaches no neighbour.
 
+use crate::promises::pictures::{noisy, picture, reference};
 use citylights::image::Picture;
 use citylights::image::map::{Map, Scale, magma};
 use citylights::image::metrics::Pair;
-
-const WIDTH: u32 = 24;
-const HEIGHT: u32 = 16;
-
-/// A picture of values that differ from pixel to pixel and channel to channel.
-fn picture(value: impl Fn(usize, usize) -> f32) -> Picture {
-    let pixels = (0..(WIDTH * HEIGHT) as usize).map(|i| [0, 1, 2].map(|c| value(i, c))).collect();
-    Picture { width: WIDTH, height: HEIGHT, pixels }
-}
-
-fn reference() -> Picture {
-    picture(|i, c| 0.1 + (i % 7) as f32 * 0.3 + c as f32 * 0.05)
-}
-
-fn noisy() -> Picture {
-    picture(|i, c| reference().pixels[i][c] * (1.0 + 0.2 * ((i * 5 + c * 3) % 11) as f32 / 11.0))
-}
 
 #[test]
 fn left_out_pixels_do_not_reach_their_neighbours_through_flip() {

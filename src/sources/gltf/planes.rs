@@ -3,6 +3,7 @@
 //! Here nothing is: a scene is seen from the camera's place on, as far as it goes. Where that shows something that
 //! viewers of the file do not, it is told.
 
+use crate::base::polygon::above;
 use crate::scene::camera::Camera;
 use glam::{DVec3, Vec3};
 
@@ -59,16 +60,5 @@ impl Planes {
 
 /// What of a convex polygon lies where `axis` has at least `least`.
 fn half(polygon: &[DVec3], axis: DVec3, least: f64) -> Vec<DVec3> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (i, &here) in polygon.iter().enumerate() {
-        let next = polygon[(i + 1) % polygon.len()];
-        let (mine, its) = (here.dot(axis) - least, next.dot(axis) - least);
-        if mine >= 0.0 {
-            kept.push(here);
-        }
-        if (mine >= 0.0) != (its >= 0.0) {
-            kept.push(here + (next - here) * (mine / (mine - its)));
-        }
-    }
-    kept
+    above(polygon, |corner| corner.dot(axis) - least)
 }
