@@ -140,6 +140,11 @@ fn verify(
     watch.end();
     let lights = stage.scene().lights().len();
     print(&format!("{}: {lights} lights, {} receivers\n", scene.name(), stage.receivers().len()))?;
+    if verifier.dim() > 0 {
+        let all = options.receivers.min(stage.receivers().len());
+        let dim = verifier.dim();
+        print(&format!("  {dim} of {all} receivers get less light than f32 holds with all its digits: no statistics there\n"))?;
+    }
     let mut image = gate::arithmetic(&stage, options.seed);
     image.extend(metamorphic.iter().flat_map(Metamorphic::image));
     let image = Found { strategy: "(the image)".into(), checks: Ok(image), biased: false };

@@ -4,7 +4,8 @@ use super::check::Check;
 use super::observe::Site;
 use crate::base::colour::luminance;
 use crate::scene::Scene;
-use crate::scene::light::LightId;
+use crate::scene::light::{Kind, Light, LightId};
+use crate::scene::receiver::Receiver;
 use crate::shading::importance::importance;
 
 /// The check's name.
@@ -16,8 +17,9 @@ const NOTICEABLE: f64 = 0.01;
 /// Counts the lights that add something at a receiver and have no chance there.
 ///
 /// Where expected counts cannot be told, a light that was never seen is suspicious only if weaker ones were, seen
-/// often, however weakness is measured: by flux, by what arrives with nothing in between, by what does arrive. A right
-/// strategy may wait long for a light in the shadow of another.
+/// often, however weakness is measured: by flux, by what arrives with nothing in between, by what does arrive, by what
+/// would arrive if the surface faced the light. A right strategy may wait long for a light in the shadow of another, or for one
+/// that is out of its usual range.
 pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
     let (lights, radius) = (scene.lights(), scene.radius());
     let mut missing = 0u64;
@@ -27,8 +29,9 @@ pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
         let total = site.truth.total();
         let value = |light: usize| site.truth.lights()[light];
         let strength = |light: usize| {
-            let open = f64::from(importance(&lights[light], &site.at));
-            [f64::from(luminance(lights[light].flux(radius))), open, value(light)]
+            let own = &lights[light];
+            let open = f64::from(importance(own, &site.at));
+            [f64::from(luminance(own.flux(radius))), open, value(light), facing(own, &site.at)]
         };
         let weaker_seen = |light: usize| {
             let own = strength(light);
@@ -50,4 +53,14 @@ pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
         first.map_or_else(String::new, |(.., share)| format!("; this one is {:.3} % of the radiance", share * 100.0));
     let detail = format!("lights that add something and cannot be chosen, of {hypotheses}{share}");
     Check::new(COVERAGE, missing as f64, 0.0, detail).at(first.map(|first| first.1), first.map(|first| first.0))
+}
+
+/// What would arrive of a light at most if the surface faced it, about: infinite of a directional one, which has no distance.
+fn facing(light: &Light, at: &Receiver) -> f64 {
+    let away2 = match light.kind() {
+        Kind::Directional => 0.0,
+        Kind::Triangle => light.corners().iter().map(|corner| corner.distance_squared(at.position)).fold(f32::MAX, f32::min),
+        Kind::Point | Kind::Spot => light.position.distance_squared(at.position),
+    };
+    f64::from(light.peak_intensity().max_element()) / f64::from(away2)
 }

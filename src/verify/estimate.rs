@@ -1,8 +1,9 @@
 //! Is the mean estimate the exact sum?
 
 use super::check::Check;
-use super::observe::{Batch, Site, freedom};
+use super::observe::{Batch, Seen, Site, freedom};
 use super::options::VerifyOptions;
+use super::unseen::Missing;
 use super::weights::ROUNDING;
 use crate::base::statistics::{Moments, sidak, skewness, student_p, student_quantile, unskewed};
 
@@ -19,6 +20,7 @@ struct Difference {
     /// Of the mean, by the model; and of a batch, as measured where there is no model, with the number of batches.
     skewness: f64,
     measured: (f64, usize),
+    missing: Missing,
 }
 
 /// From this skewness of a mean on, a measured variance may be luck: the model's is the least.
@@ -31,7 +33,7 @@ impl Difference {
     /// The variance of the model is that of independent picks. Numbers spread evenly over passes leave less, but
     /// nothing is gained for lights so rare that they make a mean lopsided; where it is, the test is as strong as with
     /// independent picks.
-    fn of(batches: &[f64], wanted: Moments, model: [f64; 3], told: bool) -> Self {
+    fn of(batches: &[f64], wanted: Moments, model: [f64; 3], told: bool, missing: Missing) -> Self {
         let found = Moments::of(batches.iter().copied());
         let [model_variance, least, third] = model;
         let mut own = (found.variance / found.n as f64).max(least);
@@ -46,16 +48,26 @@ impl Difference {
         let freedom = if shares > 0.0 { (own + reference).powi(2) / shares } else { found.n as f64 - 1.0 };
         let measured = (if told { 0.0 } else { skewness(batches.iter().copied()) }, found.n);
         let skewness = if lopsided { third / variance.powf(1.5) } else { 0.0 };
-        Self { value: found.mean - wanted.mean, variance, freedom: freedom.max(1.0), skewness, measured }
+        Self { value: found.mean - wanted.mean, variance, freedom: freedom.max(1.0), skewness, measured, missing }
     }
 
     /// The t statistic without its skewness, to first order (Johnson, JASA 73, 1978).
     fn t(&self) -> f64 {
-        if self.value == 0.0 {
+        let sure = self.missing.left_of(self.value);
+        if sure == 0.0 {
             return 0.0;
         }
-        let t = self.value / self.variance.sqrt();
+        let t = sure / self.variance.sqrt();
         unskewed(t - self.skewness / 6.0 * (t * t - 1.0), self.measured.0, self.measured.1)
+    }
+
+    /// What may not have been seen, as a text.
+    fn not_shown(&self, percent: f64) -> String {
+        let Missing { too_high, too_low } = self.missing;
+        if too_high + too_low == 0.0 {
+            return String::new();
+        }
+        format!(", rare events {:+.3} to {:+.3} %", -percent * too_high, percent * too_low)
     }
 
     fn p(&self) -> f64 {
@@ -74,20 +86,26 @@ pub(super) struct Distance<'a> {
 }
 
 impl<'a> Distance<'a> {
-    pub(super) fn new(sites: &'a [Site<'a>]) -> Self {
+    pub(super) fn new(seen: &'a Seen<'a>, options: &VerifyOptions) -> Self {
+        let sites = &seen.sites;
+        let level = sidak(options.level, sites.len() + 1);
         let wanted: Vec<Moments> = sites.iter().map(Site::wanted).collect();
         let each = sites
             .iter()
             .zip(&wanted)
-            .map(|(site, wanted)| Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some()));
+            .map(|(site, wanted)| {
+                let missing = site.unseen().missing(level);
+                Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some(), missing)
+            });
         // Receivers draw from streams of their own: their moments add.
         let sum = |of: fn(&Moments) -> f64| wanted.iter().map(of).sum::<f64>();
         let n = wanted.first().map_or(2, |wanted| wanted.n);
         let told = sites.iter().all(|site| site.expected().is_some());
         let (covered, variance) = (sum(|wanted| wanted.mean), sum(|wanted| wanted.variance));
+        let of_all = Moments { n, mean: covered, variance };
         let model = sites.iter().map(Site::model).fold([0.0; 3], |[a, b, c], [x, y, z]| [a + x, b + y, c + z]);
         let mean =
-            Difference::of(&sums(sites, |batch| batch.frequent), Moments { n, mean: covered, variance }, model, told);
+            Difference::of(&sums(sites, |batch| batch.frequent), of_all, model, told, seen.image.missing(level));
         Self { sites, each: each.collect(), mean, covered }
     }
 
@@ -103,9 +121,10 @@ impl<'a> Distance<'a> {
                     surprise,
                     Some(site.at.pixel),
                     format!(
-                        "; {:+.3} % of {wanted:.4e}, standard error {:.3} %",
+                        "; {:+.3} % of {wanted:.4e}, standard error {:.3} %{}",
                         percent * difference.value,
-                        percent * difference.variance.sqrt()
+                        percent * difference.variance.sqrt(),
+                        difference.not_shown(percent)
                     ),
                 );
             }
@@ -128,8 +147,8 @@ impl<'a> Distance<'a> {
 /// Two checks: each receiver on its own, and the mean over all of them.
 ///
 /// The statistic of the first is the natural logarithm of 1 / p, so that one limit serves all degrees of freedom.
-pub(super) fn estimate(sites: &[Site<'_>], options: &VerifyOptions) -> [Check; 2] {
-    let distance = Distance::new(sites);
+pub(super) fn estimate(seen: &Seen<'_>, options: &VerifyOptions) -> [Check; 2] {
+    let (sites, distance) = (&seen.sites, Distance::new(seen, options));
     let (worst, pixel, off) = distance.worst();
     let detail = format!(
         "greatest ln 1/p of {} receivers, {:.2} % of the radiance tested, seed {}{off}",
@@ -142,9 +161,10 @@ pub(super) fn estimate(sites: &[Site<'_>], options: &VerifyOptions) -> [Check; 2
     let (mean, percent) = (&distance.mean, 100.0 / distance.covered.max(1e-30));
     let limit = student_quantile(1.0 - 0.5 * options.level, freedom(sites));
     let detail = format!(
-        "|t| of the mean over receivers: {:+.4} % off; detectable {:.3} %, seed {}",
+        "|t| of the mean over receivers: {:+.4} % off; detectable {:.3} %{}, seed {}",
         percent * mean.value,
-        percent * (limit + 0.85) * mean.variance.sqrt(),
+        percent * ((limit + 0.85) * mean.variance.sqrt() + mean.missing.too_high),
+        mean.not_shown(percent),
         options.seed
     );
     [receivers, Check::new(IMAGE, mean.t().abs(), limit, detail)]

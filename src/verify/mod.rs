@@ -29,7 +29,7 @@
 //! | what is checked, and what does it pick? | `subject`, `calls` |
 //! | which picks does no right sampler make? | `impossible` |
 //! | does it keep what holds exactly? | `contract`, `seeds`, `arrival` |
-//! | what does it do in many draws? | `observe`, `pool`, `steady` |
+//! | what does it do in many draws, and what may these not have shown? | `observe`, `pool`, `steady`, `unseen` |
 //! | is that right on average? | `coverage`, `weights`, `estimate` |
 //! | and in a scene that was changed in ways whose effect is known? | `metamorphic` |
 //! | is the arithmetic right that all are held to? | `independent` |
@@ -56,6 +56,7 @@ mod spread;
 mod steady;
 mod subject;
 mod truth;
+mod unseen;
 mod verifier;
 mod weights;
 

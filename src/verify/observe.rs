@@ -9,10 +9,11 @@ use super::pool::{Bin, Pool};
 use super::steady::{Steady, toss};
 use super::subject::Subject;
 use super::truth::{Truth, grey};
+use super::unseen::Unseen;
 use crate::base::statistics::{Moments, skewness, unskewed};
 use crate::render::exact::shadowed;
 use crate::scene::receiver::Receiver;
-use crate::strategy::{Frame, PickBuffer, blocks};
+use crate::strategy::{Frame, Pick, PickBuffer, blocks};
 use std::ops::Range;
 
 /// Batches that a t test needs at least; a sampler that takes thousands of lights in a call leaves little to chance.
@@ -55,8 +56,17 @@ pub(super) struct Site<'a> {
     pub(super) seen: Vec<bool>,
     /// Picks that nothing can be done with.
     pub(super) impossible: Impossible,
+    /// What calls come to, as far as it was not told how often each light is picked.
+    unseen: Unseen,
     current: Batch,
     finished: Vec<Batch>,
+}
+
+/// What was seen at all receivers.
+pub(super) struct Seen<'a> {
+    pub(super) sites: Vec<Site<'a>>,
+    /// Of each pass the sum over receivers, as of a call.
+    pub(super) image: Unseen,
 }
 
 /// Sums over a batch, or their means over its calls.
@@ -116,6 +126,11 @@ impl Site<'_> {
         self.truth.sum(|light| self.steady.holds(light))
     }
 
+    /// What may be missing from the estimate: nothing where it is known how often each light is picked.
+    pub(super) fn unseen(&self) -> &Unseen {
+        &self.unseen
+    }
+
     /// The batches, a call.
     pub(super) fn batch(&self, batch: usize) -> &Batch {
         &self.finished[batch]
@@ -164,38 +179,50 @@ impl Site<'_> {
         variance
     }
 
-    fn take(&mut self, subject: &Subject<'_>, buffer: &PickBuffer, rays: &mut u64) {
-        let stage = subject.stage;
-        let lights = stage.scene().lights();
-        let batch = &mut self.current;
-        for pick in buffer.calls().flatten() {
-            if !self.impossible.look(pick, self.at.pixel, lights.len()) {
-                continue;
-            }
-            let (id, weight) = (pick.light as usize, f64::from(pick.weight));
-            self.seen[id] = true;
-            let light = &lights[id];
-            let value = self
-                .truth
-                .of_delta(pick.light, light.kind())
-                .unwrap_or_else(|| grey(shadowed(stage, stage.light_sampling(), &self.at, light, pick.uv, rays)));
-            batch.whole += weight * value;
-            if self.steady.holds(id) {
-                batch.frequent += weight * value;
-            }
-            let unit = weight * f64::from(self.counts[id]);
-            self.pool.add(id, if self.told { unit } else { weight * value });
-            if self.told {
-                if (unit - 1.0).abs() > self.worst_reciprocal.0 {
-                    self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
-                }
-                if self.truth.adds(id) {
-                    batch.contributing += 1.0;
-                    batch.excess += unit - 1.0;
-                }
+    /// Takes calls; adds what each comes to, to its place in `passes`.
+    fn take(&mut self, subject: &Subject<'_>, buffer: &PickBuffer, rays: &mut u64, passes: &mut [f64]) {
+        for (call, pass) in buffer.calls().zip(passes) {
+            let before = self.current.frequent;
+            call.iter().for_each(|pick| self.take_pick(subject, pick, rays));
+            if !self.told {
+                let value = self.current.frequent - before;
+                self.unseen.add(value);
+                self.pool.end_call();
+                *pass += value / f64::from(self.calls);
             }
         }
-        batch.picks += buffer.len() as f64;
+        self.current.picks += buffer.len() as f64;
+    }
+
+    fn take_pick(&mut self, subject: &Subject<'_>, pick: &Pick, rays: &mut u64) {
+        let stage = subject.stage;
+        let lights = stage.scene().lights();
+        if !self.impossible.look(pick, self.at.pixel, lights.len()) {
+            return;
+        }
+        let (id, weight) = (pick.light as usize, f64::from(pick.weight));
+        self.seen[id] = true;
+        let light = &lights[id];
+        let value = self
+            .truth
+            .of_delta(pick.light, light.kind())
+            .unwrap_or_else(|| grey(shadowed(stage, stage.light_sampling(), &self.at, light, pick.uv, rays)));
+        let batch = &mut self.current;
+        batch.whole += weight * value;
+        if self.steady.holds(id) {
+            batch.frequent += weight * value;
+        }
+        let unit = weight * f64::from(self.counts[id]);
+        self.pool.add(id, if self.told { unit } else { weight * value });
+        if self.told {
+            if (unit - 1.0).abs() > self.worst_reciprocal.0 {
+                self.worst_reciprocal = ((unit - 1.0).abs(), pick.light);
+            }
+            if self.truth.adds(id) {
+                batch.contributing += 1.0;
+                batch.excess += unit - 1.0;
+            }
+        }
     }
 
     fn close(&mut self) {
@@ -213,7 +240,7 @@ impl Site<'_> {
 }
 
 /// Draws at every receiver of the subject.
-pub(super) fn sites<'a>(subject: &Subject<'a>) -> Vec<Site<'a>> {
+pub(super) fn seen<'a>(subject: &Subject<'a>) -> Seen<'a> {
     let options = subject.options;
     let (frame, receivers) = (subject.stage.receivers(), subject.receivers);
     let first = subject.calls(frame, receivers, 0..FIRST);
@@ -245,21 +272,28 @@ pub(super) fn sites<'a>(subject: &Subject<'a>) -> Vec<Site<'a>> {
                 told,
                 worst_reciprocal: (0.0, 0),
                 impossible: Impossible::default(),
+                unseen: Unseen::default(),
                 current: Batch::default(),
                 finished: Vec::new(),
             }
         })
         .collect();
-    let mut rays = 0;
+    let (mut rays, mut image) = (0, Unseen::default());
+    let longest = calls.iter().copied().max().unwrap_or(0);
     for batch in 0..batches {
-        run(subject, batch, &calls, |site, buffer| sites[site].take(subject, buffer, &mut rays));
+        let mut passes = vec![0.0; longest as usize];
+        run(subject, batch, &calls, |site, first, buffer| {
+            sites[site].take(subject, buffer, &mut rays, &mut passes[first as usize..]);
+        });
         sites.iter_mut().for_each(Site::close);
+        passes.iter().for_each(|sum| image.add(sum * f64::from(longest)));
     }
-    sites
+    Seen { sites, image }
 }
 
-/// One independent run: `calls` passes at each receiver, a buffer of picks at a time.
-fn run(subject: &Subject<'_>, run: u32, calls: &[u32], mut take: impl FnMut(usize, &PickBuffer)) {
+/// One independent run: `calls` passes at each receiver, a buffer of picks at a time. Shows `take` the receiver, the
+/// first pass and the picks.
+fn run(subject: &Subject<'_>, run: u32, calls: &[u32], mut take: impl FnMut(usize, u32, &PickBuffer)) {
     let frame = Frame::new(subject.stage.receivers(), subject.key(run));
     let mut buffer = PickBuffer::default();
     for block in blocks(subject.sampler, 0..calls.iter().copied().max().unwrap_or(0)) {
@@ -271,8 +305,8 @@ fn run(subject: &Subject<'_>, run: u32, calls: &[u32], mut take: impl FnMut(usiz
             while next < block.end.min(calls) {
                 let passes: Range<u32> = next..block.end.min(calls).min(next.saturating_add(256));
                 next = passes.end;
-                worker.fill(&[*at], passes, true, &mut buffer);
-                take(site, &buffer);
+                worker.fill(&[*at], passes.clone(), true, &mut buffer);
+                take(site, passes.start, &buffer);
             }
         }
     }
@@ -295,7 +329,7 @@ fn counts(subject: &Subject<'_>, calls: &[u32]) -> Vec<Counts> {
         .collect();
     if counts.iter().any(|counts| !counts.told) {
         counts.iter_mut().filter(|counts| !counts.told).for_each(|counts| counts.counts.fill(0.0));
-        run(subject, PILOT, calls, |site, buffer| {
+        run(subject, PILOT, calls, |site, _, buffer| {
             let Counts { counts, told } = &mut counts[site];
             if !*told {
                 for pick in buffer.calls().flatten() {

@@ -1,6 +1,7 @@
 //! Which lights are tested together?
 
 use super::truth::Truth;
+use super::unseen::Unseen;
 
 /// Lights expected fewer times than this in all draws share a bin of the weights check; where all together are, there
 /// is nothing to test.
@@ -36,7 +37,10 @@ pub(super) struct Bin {
     pub(super) first: u32,
     /// Expected picks in all draws.
     picks: f64,
-    /// The sum over the current batch, and those of the batches before.
+    /// What may be missing, where expected counts cannot be told.
+    pub(super) unseen: Unseen,
+    /// The sum over the current call, over the batch before it, and those of the batches before.
+    call: f64,
     batch: f64,
     finished: Vec<f64>,
 }
@@ -94,14 +98,23 @@ impl Pool {
     /// Adds what a pick of a light comes to: weight times expected count or contribution.
     pub(super) fn add(&mut self, light: usize, amount: f64) {
         if let Some(bin) = self.bins.get_mut(self.bin_of[light] as usize) {
-            bin.batch += amount;
+            bin.call += amount;
+        }
+    }
+
+    /// Ends a call, where what each comes to matters.
+    pub(super) fn end_call(&mut self) {
+        for bin in &mut self.bins {
+            let call = std::mem::take(&mut bin.call);
+            bin.unseen.add(call);
+            bin.batch += call;
         }
     }
 
     /// Ends a batch.
     pub(super) fn close(&mut self) {
         for bin in &mut self.bins {
-            bin.finished.push(std::mem::take(&mut bin.batch));
+            bin.finished.push(std::mem::take(&mut bin.batch) + std::mem::take(&mut bin.call));
         }
     }
 }

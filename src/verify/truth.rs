@@ -64,6 +64,11 @@ impl Truth {
         self.total
     }
 
+    /// Whether some light arrives, but less than f32 holds with all its digits.
+    pub(super) fn dim(&self) -> bool {
+        self.total > 0.0 && self.total < self.mean.len() as f64 * f64::from(f32::MIN_POSITIVE)
+    }
+
     /// How much arrives of what could, about: the rest is in shadow.
     pub(super) fn lit(&self) -> f64 {
         if self.open > 0.0 { self.total / self.open } else { 0.0 }

@@ -25,6 +25,8 @@ pub struct Verifier<'a> {
     pub(super) options: VerifyOptions,
     pub(super) receivers: Vec<Receiver>,
     pub(super) truths: Vec<Truth>,
+    /// How many of them, the first, get more light than f32 can tell from nothing.
+    bright: usize,
     /// The same with other numbers and more of them, made when first needed.
     second: OnceLock<Box<Self>>,
 }
@@ -37,8 +39,22 @@ impl<'a> Verifier<'a> {
 
     /// Finds the truth at receivers of a stage.
     pub(super) fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: VerifyOptions) -> Self {
-        let truths = receivers.par_iter().map(|at| Truth::new(stage, at, options.points, options.seed)).collect();
-        Self { stage, options, receivers, truths, second: OnceLock::new() }
+        let truth = |at: &Receiver| Truth::new(stage, at, options.points, options.seed);
+        let known: Vec<(Receiver, Truth)> = receivers.par_iter().map(|at| (*at, truth(at))).collect();
+        let (bright, dim): (Vec<_>, Vec<_>) = known.into_iter().partition(|(_, truth)| !truth.dim());
+        let first = bright.len();
+        let (receivers, truths) = bright.into_iter().chain(dim).unzip();
+        Self { stage, options, receivers, truths, bright: first, second: OnceLock::new() }
+    }
+
+    /// The receivers that statistics can look at, and what is true there.
+    pub(super) fn bright(&self) -> (&[Receiver], &[Truth]) {
+        (&self.receivers[..self.bright], &self.truths[..self.bright])
+    }
+
+    /// How many receivers get some light, but less than f32 can tell from nothing: statistics leave them out.
+    pub(crate) fn dim(&self) -> usize {
+        self.receivers.len() - self.bright
     }
 
     /// What each light adds, at each receiver.
@@ -84,7 +100,8 @@ impl<'a> Verifier<'a> {
         if impossible.any() {
             return possible(&impossible).into();
         }
-        let sites = observe::sites(&subject);
+        let seen = observe::seen(&self.bright_subject(sampler));
+        let sites = &seen.sites;
         sites.iter().for_each(|site| impossible.add(&site.impossible));
         let mut checks = Vec::from(possible(&impossible));
         if impossible.any() {
@@ -92,16 +109,16 @@ impl<'a> Verifier<'a> {
         }
         checks.extend(contract::exact(&subject));
         checks.push(seeds::another(&subject));
-        checks.push(contract::picks(&sites, &self.options));
+        checks.push(contract::picks(sites, &self.options));
         match claim.bias() {
             None => {
                 // A biased strategy's pick may stand for other lights than itself, as those of lightcuts do.
-                checks.push(contract::reciprocal(&sites));
-                checks.push(coverage::coverage(self.stage.scene(), &sites));
-                checks.extend(weights::weights(&sites, &self.options));
-                checks.extend(estimate::estimate(&sites, &self.options));
+                checks.push(contract::reciprocal(sites));
+                checks.push(coverage::coverage(self.stage.scene(), sites));
+                checks.extend(weights::weights(sites, &self.options));
+                checks.extend(estimate::estimate(&seen, &self.options));
             }
-            Some(why) => checks.push(estimate::bias(&sites, why)),
+            Some(why) => checks.push(estimate::bias(sites, why)),
         }
         checks
     }
@@ -110,6 +127,12 @@ impl<'a> Verifier<'a> {
     pub(super) fn subject<'v>(&'v self, sampler: &'v dyn AnySampler) -> Subject<'v> {
         let Self { stage, options, receivers, truths, .. } = self;
         Subject { stage, options, receivers, truths, sampler }
+    }
+
+    /// The same where statistics can look.
+    pub(super) fn bright_subject<'v>(&'v self, sampler: &'v dyn AnySampler) -> Subject<'v> {
+        let (receivers, truths) = self.bright();
+        Subject { receivers, truths, ..self.subject(sampler) }
     }
 
     /// The same with other numbers and more of them.

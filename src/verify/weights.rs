@@ -20,10 +20,10 @@ pub(super) fn weights(sites: &[Site<'_>], options: &VerifyOptions) -> [Check; 2]
 
 fn bins(sites: &[Site<'_>], options: &VerifyOptions) -> Check {
     let hypotheses: usize = sites.iter().map(|site| site.bins().len()).sum();
-    let freedom = freedom(sites);
-    let limit = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), freedom);
+    let (level, freedom) = (sidak(options.level, hypotheses), freedom(sites));
+    let limit = student_quantile(1.0 - 0.5 * level, freedom);
     // The truth's own variance is known from few repetitions: it counts for more, as far out as the limit.
-    let repetitions = student_quantile(1.0 - 0.5 * sidak(options.level, hypotheses), REPEATS - 1);
+    let repetitions = student_quantile(1.0 - 0.5 * level, REPEATS - 1);
     let doubt = (repetitions / limit).powi(2);
     let mut worst = (0.0f64, None, String::new());
     for site in sites {
@@ -33,7 +33,8 @@ fn bins(sites: &[Site<'_>], options: &VerifyOptions) -> Check {
             // Few picks do not show their lopsidedness: it is Poisson's at most.
             let picks = bin.expected * site.draws();
             let skewness = if site.expected().is_some() && picks < PLENTY { bin.chance / picks.sqrt() } else { 0.0 };
-            let z = (found.mean - bin.expected) / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
+            let sure = bin.unseen.missing(level).left_of(found.mean - bin.expected);
+            let z = sure / (variance + (ROUNDING * bin.expected).powi(2)).sqrt();
             // Johnson, JASA 73, 1978: a mean's statistic without its skewness, to first order.
             let z = site.unskewed(z - skewness / 6.0 * (z * z - 1.0), bin.batches());
             if z.is_nan() || z.abs() > worst.0 {

@@ -4,12 +4,14 @@
 //! | file | what it shows |
 //! |---|---|
 //! | `verified` | every registered strategy passes all checks of its contract, on scenes small and real |
-//! | `false_alarms` | how often the gate refuses a right strategy (`--ignored`: minutes) |
+//! | `awkward` | scenes where right strategies were accused, and pass |
+//! | `false_alarms` | how often the gate and `verify` refuse a right strategy (`--ignored`: minutes) |
 //! | `metamorphic` | a scene scaled, turned, moved, permuted, with a light split or a black one |
 //! | `closed_forms` | lamps, cones, polygons and the moon |
 //! | `cutoff` | the bias of finite lights: its closed form, its repair, and the test that it fails |
 //! | `reference` | a reference is exact, says how exact, and keeps to its bound of work |
 
+mod awkward;
 mod closed_forms;
 mod cutoff;
 mod false_alarms;
