@@ -1,0 +1,217 @@
+"""Does the same light arrive in citylights as in Cycles?
+
+Two small pictures of one view in direct light: of the scene as it was opened in Cycles, and of the file that was written
+in citylights. So that they differ by light alone, all Principled surfaces are made Lambertian in Cycles, of the base
+colours that the file has, the camera does not see lamps, and pixels are taken at their centres in both. Pixels whose centre
+shows the sky or an emitter are left out. Means are compared, of the whole picture and of tiles, which say where.
+"""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+WIDTH = 64
+# Tiles across and down.
+TILES = (8, 6)
+# So many tiles are told.
+TOLD = 5
+# What is not Lambertian about a Principled shader, by the value at which it has no part. Alpha stays: it makes holes.
+OTHER_THAN_DIFFUSE = {
+    "Metallic": 0,
+    "Diffuse Roughness": 0,
+    "Specular IOR Level": 0,
+    "Transmission Weight": 0,
+    "Subsurface Weight": 0,
+    "Coat Weight": 0,
+    "Sheen Weight": 0,
+}
+
+
+def find(program):
+    """The path of the program, without which there is no check."""
+    found = shutil.which(program)
+    if not found:
+        fail(f"--check: there is no program `{program}`; --citylights PROGRAM says where it is")
+    return found
+
+
+def fail(why):
+    print(why, file=sys.stderr)
+    sys.exit(2)
+
+
+class Check:
+    """Cycles' picture of the scene as opened, and what is needed to compare another with it."""
+
+    def __init__(self, found, wanted):
+        self.found, self.wanted = found, wanted
+        scene = bpy.context.scene
+        if not found.cameras:
+            fail("--check: the scene has no camera; add one that sees what is lit")
+        if found.cameras[0][1].type != "PERSP":
+            fail(f"--check: camera `{found.cameras[0][0]}` is no perspective camera, and citylights has no others")
+        render = scene.render
+        across, down = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+        self.size = (WIDTH, max(round(WIDTH * down / across), TILES[1]))
+        with tempfile.TemporaryDirectory() as folder:
+            self.cycles = self.render(scene, Path(folder) / "cycles.exr")
+
+    def render(self, scene, path):
+        """Renders the scene as it is, but for what the head of this file says. It does not stay as it was."""
+        for material in bpy.data.materials:
+            make_lambertian(material, self.found.looks)
+        for thing in bpy.data.objects:
+            if thing.type == "LIGHT":
+                thing.visible_camera = False
+        self.prepare(scene)
+        if not scene.camera:
+            scene.camera = next(thing for thing in scene.objects if thing.name == self.found.cameras[0][0])
+        scene.camera.data.dof.use_dof = False
+        render, cycles = scene.render, scene.cycles
+        render.engine = "CYCLES"
+        render.use_compositing = render.use_sequencer = render.use_motion_blur = render.film_transparent = False
+        render.use_border = render.use_multiview = False
+        render.image_settings.file_format = "OPEN_EXR"
+        render.image_settings.color_mode, render.image_settings.color_depth = "RGB", "32"
+        scene.view_settings.view_transform, scene.view_settings.exposure, scene.view_settings.gamma = "Raw", 0, 1
+        scene.view_settings.use_curve_mapping = False
+        cycles.device, cycles.samples, cycles.film_exposure = "CPU", self.wanted.samples, 1
+        # The narrowest filter that there is: a box has a width of 1 whatever is said.
+        cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.max_bounces = cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0
+        for layer in scene.view_layers:
+            layer.use = layer == bpy.context.view_layer
+            layer.samples, layer.material_override = 0, None
+        render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        return pixels(path)
+
+    def prepare(self, scene):
+        """Gives the scene the size of the small pictures."""
+        render = scene.render
+        render.resolution_x, render.resolution_y = self.size
+        render.resolution_percentage, render.pixel_aspect_x, render.pixel_aspect_y = 100, 1, 1
+
+    def agrees(self, target, quads):
+        """Renders `target` in citylights, prints the differences, and says whether they lie within the tolerance."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "citylights.exr"
+            command = [find(self.wanted.citylights), "reference", target, "-o", path, "--cache", folder]
+            command += ["--resolution", "{}x{}".format(*self.size), "--noise", "1e-4"]
+            done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
+            if done.returncode:
+                fail(f"--check: citylights says: {done.stderr.strip()}")
+            here = pixels(path)
+        shown, places = self.surfaces(quads)
+        if not shown.any():
+            fail("--check: the camera sees no surface that reflects")
+        return self.compare(here, shown, places)
+
+    def surfaces(self, quads):
+        """Which pixels of the converted scene show a surface that reflects, and where in the world each lies."""
+        scene = bpy.context.scene
+        self.prepare(scene)
+        graph, matrix = bpy.context.evaluated_depsgraph_get(), scene.camera.matrix_world
+        corners = [np.array(corner) for corner in scene.camera.data.view_frame(scene=scene)]
+        top_right, _, bottom_left, top_left = corners
+        width, height = self.size
+        shown, places = np.zeros((height, width), bool), np.zeros((height, width, 3))
+        for y, x in np.ndindex(height, width):
+            at = top_left + (x + 0.5) / width * (top_right - top_left) + (y + 0.5) / height * (bottom_left - top_left)
+            direction = matrix.to_3x3() @ bpy_vector(at)
+            hit, place, _, face, thing, _ = scene.ray_cast(graph, matrix.to_translation(), direction)
+            if hit and thing.name not in quads:
+                material = thing.data.materials[thing.data.polygons[face].material_index]
+                shown[y, x], places[y, x] = strength(material) == 0, place
+        return shown, places
+
+    def compare(self, here, shown, places):
+        means = [picture[shown].mean() for picture in (self.cycles, here)]
+        scale, tolerance = max(means[0], 1e-9), self.wanted.tolerance
+        whole = difference(means, scale)
+        print(f"mean radiance of surfaces: Cycles {means[0]:.5g}, citylights {means[1]:.5g}, differing by {whole:+.1%}")
+        worst = []
+        for rows, columns, number in tiles(self.size):
+            inside = shown[rows, columns]
+            if not inside.any():
+                continue
+            pair = [picture[rows, columns][inside].mean(axis=0) for picture in (self.cycles, here)]
+            scales = max(scale, pair[0].mean())
+            by = max((pair[1] - pair[0]) / scales, key=abs)
+            worst.append((abs(by), by, number, pair, places[rows, columns][inside].mean(axis=0)))
+        worst.sort(key=lambda tile: -tile[0])
+        outside = [tile for tile in worst if tile[0] > tolerance]
+        for _, by, (column, row), pair, place in outside[:TOLD]:
+            print(
+                f"  tile {column} from the left, {row} from the top, of {TILES[0]} x {TILES[1]}: Cycles "
+                f"{pair[0].mean():.4g}, citylights {pair[1].mean():.4g} ({by:+.0%}){self.nearest(place)}"
+            )
+        if outside or abs(whole) > tolerance:
+            print(f"light differs by more than {tolerance:.1%} in {len(outside)} of {len(worst)} tiles")
+            return False
+        print(f"light agrees within {tolerance:.1%} in all {len(worst)} tiles; the worst is off by {worst[0][0]:.1%}")
+        return True
+
+    def nearest(self, place):
+        """Which lamp or emitter of the scene as opened is nearest to a place."""
+        away = [(float(np.linalg.norm(np.array(at) - place)), name) for name, at in self.found.sources]
+        return "; nearest to it is `{1}`, {0:.3g} m off".format(*min(away)) if away else ""
+
+
+def difference(pair, scale):
+    return (pair[1] - pair[0]) / scale
+
+
+def tiles(size):
+    """Rows and columns of each tile, and its number across and down from 1."""
+    width, height = size
+    for row in range(TILES[1]):
+        for column in range(TILES[0]):
+            rows = slice(row * height // TILES[1], (row + 1) * height // TILES[1])
+            columns = slice(column * width // TILES[0], (column + 1) * width // TILES[0])
+            yield rows, columns, (column + 1, row + 1)
+
+
+def bpy_vector(values):
+    from mathutils import Vector
+
+    return Vector(values)
+
+
+def strength(material):
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    return shader.inputs["Emission Strength"].default_value
+
+
+def make_lambertian(material, looks):
+    """Leaves of the Principled shaders of a material diffuse reflection of the file's base colour, and emission."""
+    if material.name not in looks.known:
+        return
+    tree = material.node_tree
+    for node in tree.nodes if tree else ():
+        if node.type != "BSDF_PRINCIPLED":
+            continue
+        values = {**OTHER_THAN_DIFFUSE, "Base Color": (*looks.of(material).base, 1)}
+        for name, value in values.items():
+            for link in list(node.inputs[name].links):
+                tree.links.remove(link)
+            node.inputs[name].default_value = value
+        for link in list(node.inputs["Normal"].links):
+            tree.links.remove(link)
+
+
+def pixels(path):
+    """The linear RGB of an EXR file, rows from the top."""
+    image = bpy.data.images.load(str(path))
+    image.colorspace_settings.name = "Non-Color"
+    values = np.empty(image.size[0] * image.size[1] * image.channels, np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(image.size[1], image.size[0], image.channels)[::-1, :, :3].copy()
+    bpy.data.images.remove(image)
+    return values
