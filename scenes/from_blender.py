@@ -14,7 +14,7 @@ and emission of Principled, Emission and Diffuse shaders, also where they are ad
 its power kept:
 - a textured base colour becomes the texture's mean;
 - an emission texture becomes a few plain emissive materials: each face takes the texture's mean over itself, faces of
-  like brightness share their area-weighted mean, and faces under --dim (0.01 of the material's brightest) go dark;
+  like brightness and hue share their mean, and faces under --dim (0.01 of the material's brightest) go dark;
 - area lamps become emissive quads, which block light and are seen; those with a spread become grids of spots;
 - the soft edge of a spot becomes glTF's, which has another profile;
 - lamps with a radius become points, suns with an angle become directions: their shadows are hard.
@@ -80,7 +80,7 @@ def main(arguments):
     )
     for line in notes.lines():
         print(line)
-    if not what.lamps and not any(shines for _, _, shines in what.meshes):
+    if not what.lamps and not any(mesh.shines for mesh in what.meshes):
         print("nothing in the scene gives light")
     if picture and not picture.agrees(target, quads):
         sys.exit(1)

@@ -14,6 +14,10 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Vector
+
+from .found import SURFACES
+from .looks import NO_MATERIAL
 
 WIDTH = 64
 # Tiles across and down.
@@ -65,6 +69,7 @@ class Check:
         """Renders the scene as it is, but for what the head of this file says. It does not stay as it was."""
         for material in bpy.data.materials:
             make_lambertian(material, self.found.looks)
+        give_materials()
         for thing in bpy.data.objects:
             if thing.type == "LIGHT":
                 thing.visible_camera = False
@@ -124,7 +129,7 @@ class Check:
         shown, places = np.zeros((height, width), bool), np.zeros((height, width, 3))
         for y, x in np.ndindex(height, width):
             at = top_left + (x + 0.5) / width * (top_right - top_left) + (y + 0.5) / height * (bottom_left - top_left)
-            direction = matrix.to_3x3() @ bpy_vector(at)
+            direction = matrix.to_3x3() @ Vector(at)
             hit, place, _, face, thing, _ = scene.ray_cast(graph, matrix.to_translation(), direction)
             if hit and thing.name not in quads:
                 material = thing.data.materials[thing.data.polygons[face].material_index]
@@ -178,12 +183,6 @@ def tiles(size):
             yield rows, columns, (column + 1, row + 1)
 
 
-def bpy_vector(values):
-    from mathutils import Vector
-
-    return Vector(values)
-
-
 def strength(material):
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     return shader.inputs["Emission Strength"].default_value
@@ -204,6 +203,22 @@ def make_lambertian(material, looks):
             node.inputs[name].default_value = value
         for link in list(node.inputs["Normal"].links):
             tree.links.remove(link)
+
+
+def give_materials():
+    """Gives a grey material to what has none: without one Cycles shows a surface that gleams."""
+    grey = bpy.data.materials.new("no material")
+    if not grey.node_tree:
+        grey.use_nodes = True
+    tree = grey.node_tree
+    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    diffuse.inputs["Color"].default_value = (*NO_MATERIAL, 1)
+    tree.links.new(diffuse.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
+    for thing in bpy.data.objects:
+        if thing.type in SURFACES and not thing.material_slots:
+            thing.data.materials.append(grey)
+        for slot in thing.material_slots:
+            slot.material = slot.material or grey
 
 
 def pixels(path):

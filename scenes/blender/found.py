@@ -16,10 +16,11 @@ SURFACES = ("MESH", "CURVE", "SURFACE", "FONT", "META")
 
 
 class Mesh(NamedTuple):
-    """A triangulated mesh in the world's coordinates; `shines` is whether its emission lights anything."""
+    """A triangulated mesh in the world's coordinates, its materials; `shines` is whether it emits what lights anything."""
 
     name: str
     data: bpy.types.Mesh
+    materials: list
     shines: bool
 
 
@@ -80,11 +81,12 @@ class Found:
         bmesh.ops.triangulate(triangles, faces=triangles.faces[:])
         triangles.to_mesh(mesh)
         triangles.free()
-        emits = any(look.emits() for look in map(self.looks.of, list(mesh.materials) or [None]))
+        materials = materials_of(thing, mesh)
+        emits = any(look.emits() for look in map(self.looks.of, materials))
         if emits:
             self.sources.append((thing.name, matrix.to_translation()))
         if self.is_kept(thing, emits):
-            self.meshes.append(Mesh(thing.name, mesh, thing.visible_diffuse))
+            self.meshes.append(Mesh(thing.name, mesh, materials, emits and thing.visible_diffuse))
 
     def is_kept(self, thing, emits):
         """Whether an object stands in the scene here; tells what its visibility changes."""
@@ -99,6 +101,15 @@ class Found:
             self.notes.add(thing.name, "objects that the camera does not see", "it sees them here")
         lamps.tell_of_linking(thing, self.notes)
         return True
+
+
+def materials_of(thing, mesh):
+    """The material of each slot: the object's where it has one of its own, the mesh's elsewhere."""
+    materials = [material and material.original for material in mesh.materials]
+    for slot in thing.material_slots:
+        if slot.link == "OBJECT" and slot.slot_index < len(materials):
+            materials[slot.slot_index] = slot.material and slot.material.original
+    return materials or [None]
 
 
 def shines(background):

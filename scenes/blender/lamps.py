@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from mathutils import Matrix, Vector
 
-from .nodes import Input, black_body, surface
+from .nodes import Input, black_body, grey, parts, rgb, surface
 
 # A ramp of glTF, the square of a linear one, that begins so far below the ramp of a soft spot of Blender's, a smooth step,
 # is nearest to it. Both in parts of that ramp, which is linear in the cosine.
@@ -93,26 +93,26 @@ def size_of(data):
 def shader_of(name, data, notes):
     """Colour times strength of a lamp's nodes."""
     begin = surface(data.node_tree)
-    source = begin.source()[0] if begin else None
-    if source is None:
-        return (0, 0, 0)
-    node, _, groups = source
-    if node.type != "EMISSION":
-        notes.add(name, "lamps whose nodes are more than one Emission", "carried as if they had no nodes; give them one Emission")
-        return (1, 1, 1)
-    colour, strength = Input(node.inputs["Color"], groups), Input(node.inputs["Strength"], groups)
-    hue, value = colour.constant(), strength.constant()
-    if value is None:
-        value = fall_off(strength, name, notes)
-    if hue is None or value is None:
-        notes.add(
-            name,
-            "lamps whose nodes change with direction or place (textures, IES)",
-            "what changes is taken as 1, so pattern and brightness differ; give Emission plain numbers",
-        )
-    hue = (1, 1, 1) if hue is None else hue
-    value = 1 if value is None else value
-    return tuple(value * channel for channel in (hue if isinstance(hue, tuple) else (hue,) * 3))
+    found, unsure = parts(begin) if begin else ([], False)
+    if unsure or any(part.node.type != "EMISSION" for part in found):
+        notes.add(name, "lamps whose nodes are not Emission alone", "only its part is carried; add or mix Emission by numbers")
+    total = [0, 0, 0]
+    for part in found:
+        if part.node.type != "EMISSION":
+            continue
+        hue, strength = part.input("Color").constant(), part.input("Strength")
+        value = strength.constant()
+        if value is None:
+            value = fall_off(strength, name, notes)
+        if hue is None or value is None:
+            notes.add(
+                name,
+                "lamps whose nodes change with direction or place (textures, IES)",
+                "what changes is taken as 1, so pattern and brightness differ; give Emission plain numbers",
+            )
+        hue, value = rgb(1 if hue is None else hue), grey(1 if value is None else value)
+        total = [sum_ + part.weight * value * channel for sum_, channel in zip(total, hue)]
+    return total
 
 
 def fall_off(strength, name, notes):
@@ -195,6 +195,7 @@ def area(name, data, matrix, power, notes):
     height = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
     if data.shape in ("DISK", "ELLIPSE"):
         width, height = (side * math.sqrt(math.pi) / 2 for side in (width, height))
+        notes.add(name, "round area lamps", "rectangles of the same area: the light within a width of them differs a little")
     centre, direction = matrix.to_translation(), -matrix.col[2].xyz
     across, along = matrix.col[0].xyz * width, matrix.col[1].xyz * height
     size = across.cross(along).length

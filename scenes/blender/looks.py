@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .nodes import Input, parts, surface
+from .nodes import Input, grey, parts, rgb, surface
 
 # Look-ups per triangle: a regular grid of barycentric points.
 GRID = [((i + 1 / 3) / 8, (j + 1 / 3) / 8) for i in range(8) for j in range(8 - i)]
@@ -127,7 +127,7 @@ class Looks:
             if picture is None:
                 self.note(name, "base colours from nodes other than a picture", "grey of 0.5 here; bake them to a picture")
             value = UNKNOWN if picture is None else picture.texels.mean(axis=(0, 1))
-        return value if hasattr(value, "__len__") else (value,) * 3
+        return rgb(tuple(value) if isinstance(value, np.ndarray) else value)
 
     def emission(self, part, name):
         """The constant factor of what a shader emits, and the pictures that multiply it; None if it is left out."""
@@ -140,7 +140,7 @@ class Looks:
         else:
             return None, ()
         value, hue, pictures = strength.constant(), colour.constant(), []
-        value = sum(value) / 3 if isinstance(value, tuple) else value
+        value = None if value is None else grey(value)
         if value == 0 or weight == 0 or hue == (0, 0, 0):
             return None, ()
         if value is None:
@@ -152,7 +152,8 @@ class Looks:
                     "bake it to a picture, or give it a number",
                 )
                 return None, ()
-            pictures.append(Picture(picture.texels.mean(axis=2, keepdims=True).repeat(3, 2), picture.layer))
+            shades = grey(tuple(np.moveaxis(picture.texels, 2, 0)))
+            pictures.append(Picture(np.repeat(shades[..., None], 3, axis=2), picture.layer))
         if hue is None:
             picture, hue = self.picture(colour, name), (1, 1, 1)
             if picture is None:
@@ -161,8 +162,7 @@ class Looks:
                 )
             else:
                 pictures.append(picture)
-        hue = hue if isinstance(hue, tuple) else (hue,) * 3
-        factor = tuple(weight * value * channel for channel in hue)
+        factor = tuple(weight * value * channel for channel in rgb(hue))
         if min(factor) < 0:
             self.note(name, "left out: emission of negative strength or colour", "glTF has none")
             return None, ()

@@ -46,7 +46,10 @@ class Input(NamedTuple):
             return None
         if node.type in ("VALUE", "RGB"):
             return plain(node.outputs[0].default_value)
+        if node.type not in ("BLACKBODY", "MATH"):
+            return None
         operands = [Input(socket, groups).constant() for socket in node.inputs]
+        operands = [None if each is None else grey(each) for each in operands]
         if node.type == "BLACKBODY" and operands[0] is not None:
             return black_body(operands[0])
         if node.type == "MATH" and None not in operands[:2] and node.operation in ARITHMETIC:
@@ -65,6 +68,16 @@ ARITHMETIC = {
 
 def plain(value):
     return value if isinstance(value, (int, float)) else tuple(value)[:3]
+
+
+def rgb(value):
+    """A colour as it is, a number as the grey that Blender makes of it."""
+    return value if isinstance(value, tuple) else (value,) * 3
+
+
+def grey(value):
+    """A number as it is, a colour as the number that Cycles makes of it: its luminance."""
+    return 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2] if isinstance(value, tuple) else value
 
 
 def output_of(tree):

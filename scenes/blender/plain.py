@@ -8,10 +8,9 @@ import numpy as np
 
 from .lamps import Quad
 
-# Faces of like brightness share a material: levels half a stop apart.
+# Faces of like brightness and hue share a material: levels half a stop apart, channels a quarter of the greatest.
 LEVELS_PER_STOP = 2
-# The level of faces that are too dim to be emitters.
-DARK = -10_000
+HUES = 4
 
 
 def replace(found, dim):
@@ -24,9 +23,9 @@ def replace(found, dim):
         camera.matrix_world = matrix
     # The first is the one that citylights takes by default.
     scene.camera = next((thing for thing in scene.objects if thing.type == "CAMERA"), None)
-    for name, mesh, shines in found.meshes:
-        make.give_materials(mesh, found.looks, shines, dim)
-        make.linked(name, mesh)
+    for mesh in found.meshes:
+        make.give_materials(mesh, found.looks, dim)
+        make.linked(mesh.name, mesh.data)
     quads = set()
     for lamp in found.lamps:
         thing = make.quad(lamp) if isinstance(lamp, Quad) else make.lamp(lamp)
@@ -89,37 +88,35 @@ class Maker:
         mesh.materials.append(self.material(f"{quad.name} glow", (0, 0, 0), quad.radiance, True))
         return self.linked(quad.name, mesh)
 
-    def give_materials(self, mesh, looks, shines, dim):
-        """Gives each face of a triangulated mesh a plain material: of its own brightness where pictures decide it."""
+    def give_materials(self, found, looks, dim):
+        """Gives each face of a mesh a plain material: of its own brightness where pictures decide it."""
+        mesh, opened = found.data, found.materials
         count = len(mesh.polygons)
         slots, areas = np.empty(count, np.int32), np.empty(count, np.float32)
         mesh.polygons.foreach_get("material_index", slots)
         mesh.polygons.foreach_get("area", areas)
-        opened = list(mesh.materials) or [None]
         slots = np.clip(slots, 0, len(opened) - 1)
         plain, numbers = [], np.zeros(count, np.int32)
         for slot in np.unique(slots):
             look, faces = looks.of(opened[slot]), np.flatnonzero(slots == slot)
             name = opened[slot].name if opened[slot] else "no material"
-            levels, colours = self.levels(look, mesh, faces, dim) if shines else (np.full(len(faces), DARK), None)
-            for level in np.unique(levels):
-                members = levels == level
-                glow = (0, 0, 0)
-                if level != DARK:
-                    glow = np.average(colours[members], axis=0, weights=areas[faces[members]] + 1e-30)
+            colours = look.over_faces(mesh)[faces] if found.shines else np.zeros((len(faces), 3))
+            kinds = self.kinds(colours, dim if look.pictures else 0.0)
+            for kind in np.unique(kinds, axis=0):
+                members = (kinds == kind).all(axis=1)
+                glow = np.average(colours[members], axis=0, weights=areas[faces[members]] + 1e-30)
                 numbers[faces[members]] = len(plain)
-                plain.append(self.material(name, look.base, glow, look.front))
+                plain.append(self.material(name, look.base, glow if kind.any() else (0, 0, 0), look.front))
         mesh.materials.clear()
         for material in plain:
             mesh.materials.append(material)
         mesh.polygons.foreach_set("material_index", numbers)
 
-    def levels(self, look, mesh, faces, dim):
-        """Which faces are of like brightness: a level for each, and their colours."""
-        if not look.pictures:
-            return np.full(len(faces), 0 if look.emits() else DARK), np.tile(look.glow, (len(faces), 1))
-        colours = look.over_faces(mesh)[faces]
-        brightness = colours.max(axis=1)
-        levels = np.floor(LEVELS_PER_STOP * np.log2(np.maximum(brightness, 1e-12))).astype(int)
-        levels[(brightness <= dim * brightness.max()) | (brightness <= 0)] = DARK
-        return levels, colours
+    def kinds(self, colours, dim):
+        """For each colour four numbers, the same for colours that are alike, and zeros for those too dim to be emitters."""
+        brightness = colours.max(axis=1, keepdims=True)
+        safe = np.maximum(brightness, 1e-30)
+        level = np.floor(LEVELS_PER_STOP * np.log2(safe))
+        kinds = np.hstack([level, np.rint(HUES * colours / safe)]).astype(int)
+        kinds[(brightness <= dim * brightness.max())[:, 0]] = 0
+        return kinds
