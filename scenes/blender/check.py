@@ -76,11 +76,15 @@ class Check:
         self.prepare(scene)
         if not scene.camera:
             scene.camera = next(thing for thing in scene.objects if thing.name == self.found.cameras[0][0])
-        scene.camera.data.dof.use_dof = False
+        camera = scene.camera.data = scene.camera.data.copy()
+        camera.dof.use_dof, camera.shift_x, camera.shift_y = False, 0, 0
+        camera.clip_start, camera.clip_end = 1e-3, 1e7
         render, cycles = scene.render, scene.cycles
         render.engine = "CYCLES"
         render.use_compositing = render.use_sequencer = render.use_motion_blur = render.film_transparent = False
         render.use_border = render.use_multiview = False
+        if hasattr(render.image_settings, "media_type"):
+            render.image_settings.media_type = "IMAGE"
         render.image_settings.file_format = "OPEN_EXR"
         render.image_settings.color_mode, render.image_settings.color_depth = "RGB", "32"
         scene.view_settings.view_transform, scene.view_settings.exposure, scene.view_settings.gamma = "Raw", 0, 1
@@ -88,7 +92,7 @@ class Check:
         cycles.device, cycles.samples, cycles.film_exposure = "CPU", self.wanted.samples, 1
         # The narrowest filter that there is: a box has a width of 1 whatever is said.
         cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01
-        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
         cycles.max_bounces = cycles.sample_clamp_direct = cycles.light_sampling_threshold = 0
         for layer in scene.view_layers:
             layer.use = layer == bpy.context.view_layer
@@ -155,7 +159,7 @@ class Check:
         for _, by, (column, row), pair, place in outside[:TOLD]:
             print(
                 f"  tile {column} from the left, {row} from the top, of {TILES[0]} x {TILES[1]}: Cycles "
-                f"{pair[0].mean():.4g}, citylights {pair[1].mean():.4g} ({by:+.0%}){self.nearest(place)}"
+                f"{pair[0].mean():.4g}, citylights {pair[1].mean():.4g} ({by:+.0%} of the mean){self.nearest(place)}"
             )
         if outside or abs(whole) > tolerance:
             print(f"light differs by more than {tolerance:.1%} in {len(outside)} of {len(worst)} tiles")

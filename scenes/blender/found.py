@@ -34,6 +34,9 @@ class Found:
         first = first_camera(scene)
         cameras = sorted((thing for thing in scene.objects if thing.type == "CAMERA"), key=lambda thing: thing != first)
         self.cameras = [(thing.name, thing.data, thing.matrix_world.copy()) for thing in cameras]
+        for name, data, _ in self.cameras:
+            if data.shift_x or data.shift_y:
+                self.notes.add(name, "cameras with a shift", "glTF has none: they look straight ahead")
         self.world()
         as_rendered(self.read)
         self.others()
@@ -51,7 +54,9 @@ class Found:
         """Tells of what else the file has."""
         for scene in bpy.data.scenes:
             if scene != bpy.context.scene:
-                self.notes.add(scene.name, "left out: other scenes of the file", "save the file with the scene shown that is meant")
+                self.notes.add(
+                    scene.name, "left out: other scenes of the file", "save the file with the scene shown that is meant"
+                )
         for layer in bpy.context.scene.view_layers:
             if layer != bpy.context.view_layer and layer.use:
                 self.notes.add(layer.name, "left out: other view layers", "what they alone show is not converted")
@@ -91,12 +96,16 @@ class Found:
     def is_kept(self, thing, emits):
         """Whether an object stands in the scene here; tells what its visibility changes."""
         if not thing.visible_shadow and not emits:
-            self.notes.add(thing.name, "left out: objects that cast no shadow", "they would block light here, which has no such objects")
+            self.notes.add(
+                thing.name, "left out: objects that cast no shadow", "they would block light here, which has no such objects"
+            )
             return False
         if emits and not thing.visible_shadow:
             self.notes.add(thing.name, "emitters that cast no shadow", "they block light here")
         if emits and not thing.visible_diffuse:
-            self.notes.add(thing.name, "emitters that are not visible to diffuse rays", "dark here: they shine on nothing in Cycles")
+            self.notes.add(
+                thing.name, "emitters that are not visible to diffuse rays", "dark here: they shine on nothing in Cycles"
+            )
         if not thing.visible_camera or thing.is_holdout:
             self.notes.add(thing.name, "objects that the camera does not see", "it sees them here")
         lamps.tell_of_linking(thing, self.notes)

@@ -97,7 +97,13 @@ class Looks:
         if begin and begin.socket.node.inputs["Volume"].is_linked:
             self.note(name, "left out: volumes of materials", "citylights has none")
         culled = material.use_backface_culling and bool(sides)
-        if culled and not self.culling_counts:
+        if culled and self.culling_counts:
+            self.note(
+                name,
+                "emissive materials that are not double-sided",
+                "they shine from their front, as glTF has it; in Cycles, which has no culling, from both sides",
+            )
+        elif culled:
             self.note(
                 name,
                 "emissive materials with Backface Culling",

@@ -46,6 +46,9 @@ class Input(NamedTuple):
             return None
         if node.type in ("VALUE", "RGB"):
             return plain(node.outputs[0].default_value)
+        if node.type == "LIGHT_PATH" and output == "Is Camera Ray":
+            # What lights a surface is asked for, not what the camera sees.
+            return 0.0
         if node.type not in ("BLACKBODY", "MATH"):
             return None
         operands = [Input(socket, groups).constant() for socket in node.inputs]
@@ -120,6 +123,8 @@ def parts(where, weight=1.0, front=False):
     if source is None or weight == 0.0:
         return [], False
     node, _, groups = source
+    if node.mute:
+        return [], True
     if node.type == "ADD_SHADER":
         sides = [parts(Input(socket, groups), weight, front) for socket in node.inputs]
     elif node.type == "MIX_SHADER":

@@ -5,6 +5,7 @@ All that Blender opened is replaced: by meshes of plain materials, lamps of plai
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .lamps import Quad
 
@@ -20,7 +21,9 @@ def replace(found, dim):
     make, scene = Maker(), bpy.context.scene
     for name, data, matrix in found.cameras:
         camera = make.linked(name, data)
-        camera.matrix_world = matrix
+        camera.matrix_world = Matrix.LocRotScale(matrix.to_translation(), matrix.to_quaternion(), None)
+        # glTF has no shift.
+        data.shift_x = data.shift_y = 0
     # The first is the one that citylights takes by default.
     scene.camera = next((thing for thing in scene.objects if thing.type == "CAMERA"), None)
     for mesh in found.meshes:
