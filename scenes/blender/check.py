@@ -194,7 +194,7 @@ def strength(material):
 
 def make_lambertian(material, looks):
     """Leaves of the Principled shaders of a material diffuse reflection of the file's base colour, and emission."""
-    if material.name not in looks.known:
+    if material.name_full not in looks.known:
         return
     tree = material.node_tree
     for node in tree.nodes if tree else ():

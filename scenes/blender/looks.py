@@ -67,7 +67,7 @@ class Looks:
         self.culling_counts, self.notes, self.known, self.texels = culling_counts, notes, {}, {}
 
     def of(self, material):
-        name = material.name if material else None
+        name = material.name_full if material else None
         if name not in self.known:
             self.known[name] = self.read(material) if material else Look(NO_MATERIAL)
         return self.known[name]
@@ -188,9 +188,9 @@ class Looks:
         plain = by is None or by[0].type == "UVMAP" or (by[0].type == "TEX_COORD" and by[1] == "UV")
         if not plain or node.projection != "FLAT" or node.extension != "REPEAT":
             self.note(name, "pictures that nodes place (Mapping, other coordinates)", "laid here as the UV map says, repeated")
-        if node.image.name not in self.texels:
-            self.texels[node.image.name] = linear(node.image)
-        return Picture(self.texels[node.image.name], layer)
+        if node.image.name_full not in self.texels:
+            self.texels[node.image.name_full] = linear(node.image)
+        return Picture(self.texels[node.image.name_full], layer)
 
 
 def lets_through(part):

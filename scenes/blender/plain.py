@@ -107,9 +107,12 @@ class Maker:
             kinds = self.kinds(colours, dim if look.pictures else 0.0)
             for kind in np.unique(kinds, axis=0):
                 members = (kinds == kind).all(axis=1)
-                glow = np.average(colours[members], axis=0, weights=areas[faces[members]] + 1e-30)
+                glow = (0, 0, 0)
+                if kind.any():
+                    mean = np.average(colours[members], axis=0, weights=areas[faces[members]] + 1e-30)
+                    glow = mean if look.pictures else look.glow
                 numbers[faces[members]] = len(plain)
-                plain.append(self.material(name, look.base, glow if kind.any() else (0, 0, 0), look.front))
+                plain.append(self.material(name, look.base, glow, look.front))
         mesh.materials.clear()
         for material in plain:
             mesh.materials.append(material)
