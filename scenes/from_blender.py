@@ -22,8 +22,8 @@ All surfaces are Lambertian. Whatever else loses or changes light is told in a l
 
 --check renders a small picture of the scene as it was opened in Cycles, in direct light, with all Principled surfaces made
 Lambertian as citylights has them, and the same view of OUT.glb in citylights. It says how far the light differs and where,
-and exits with 1 where it differs by more than --tolerance. Pixels that show the sky or an emitter are not compared. Cycles'
-noise is about 1 % of a tile with few lamps: more --samples halve it for four times as many.
+and exits with 1 where a tile of the picture or all of it differs by more than --tolerance beyond Cycles' noise: in parts of
+the tile's mean, or of the picture's where the tile is darker. Pixels that show the sky or an emitter are not compared.
 """
 
 import argparse

@@ -3,7 +3,8 @@
 Two small pictures of one view in direct light: of the scene as it was opened in Cycles, and of the file that was written
 in citylights. So that they differ by light alone, all Principled surfaces are made Lambertian in Cycles, of the base
 colours that the file has, the camera does not see lamps, and pixels are taken at their centres in both. Pixels whose centre
-shows the sky or an emitter are left out. Means are compared, of the whole picture and of tiles, which say where.
+shows the sky or an emitter are left out. Means are compared, of the whole picture and of tiles, which say where. Cycles
+renders twice: how far its pictures lie apart says how much of a difference may be its noise, three standard errors.
 """
 
 import shutil
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -24,6 +26,8 @@ WIDTH = 64
 TILES = (8, 6)
 # So many tiles are told.
 TOLD = 5
+# So many standard errors may be noise.
+NOISE = 3
 # What is not Lambertian about a Principled shader, by the value at which it has no part. Alpha stays: it makes holes.
 OTHER_THAN_DIFFUSE = {
     "Metallic": 0,
@@ -49,6 +53,33 @@ def fail(why):
     sys.exit(2)
 
 
+class Tile(NamedTuple):
+    """Mean radiance in Cycles and here by channel, what noise may add, and what differences are relative to."""
+
+    number: tuple
+    pair: list
+    noise: np.ndarray
+    scale: float
+    place: np.ndarray
+
+    def off(self):
+        return (self.pair[1] - self.pair[0]) / self.scale
+
+    def worst(self):
+        """The difference of the channel that differs most."""
+        return max(self.off(), key=abs)
+
+    def is_off(self, tolerance):
+        return (np.abs(self.off()) > tolerance + self.noise / self.scale).any()
+
+    def __str__(self):
+        column, row = self.number
+        return (
+            f"tile {column} from the left, {row} from the top, of {TILES[0]} x {TILES[1]}: Cycles {self.pair[0].mean():.4g}, "
+            f"citylights {self.pair[1].mean():.4g} ({self.worst():+.0%})"
+        )
+
+
 class Check:
     """Cycles' picture of the scene as opened, and what is needed to compare another with it."""
 
@@ -63,10 +94,14 @@ class Check:
         across, down = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
         self.size = (WIDTH, max(round(WIDTH * down / across), TILES[1]))
         with tempfile.TemporaryDirectory() as folder:
-            self.cycles = self.render(scene, Path(folder) / "cycles.exr")
+            self.prepare_for_cycles(scene)
+            halves = [self.render(scene, seed, Path(folder) / f"{seed}.exr") for seed in (0, 1)]
+        self.cycles = (halves[0] + halves[1]) / 2
+        # Of the mean of two, the variance is the square of half their difference.
+        self.variance = ((halves[0] - halves[1]) / 2) ** 2
 
-    def render(self, scene, path):
-        """Renders the scene as it is, but for what the head of this file says. It does not stay as it was."""
+    def prepare_for_cycles(self, scene):
+        """Makes the scene what the head of this file says. It does not stay as it was."""
         for material in bpy.data.materials:
             make_lambertian(material, self.found.looks)
         give_materials()
@@ -89,7 +124,7 @@ class Check:
         render.image_settings.color_mode, render.image_settings.color_depth = "RGB", "32"
         scene.view_settings.view_transform, scene.view_settings.exposure, scene.view_settings.gamma = "Raw", 0, 1
         scene.view_settings.use_curve_mapping = False
-        cycles.device, cycles.samples, cycles.film_exposure = "CPU", self.wanted.samples, 1
+        cycles.device, cycles.samples, cycles.film_exposure = "CPU", max(self.wanted.samples // 2, 1), 1
         # The narrowest filter that there is: a box has a width of 1 whatever is said.
         cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01
         cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = False
@@ -97,7 +132,9 @@ class Check:
         for layer in scene.view_layers:
             layer.use = layer == bpy.context.view_layer
             layer.samples, layer.material_override = 0, None
-        render.filepath = str(path)
+
+    def render(self, scene, seed, path):
+        scene.cycles.seed, scene.cycles.use_animated_seed, scene.render.filepath = seed, False, str(path)
         bpy.ops.render.render(write_still=True)
         return pixels(path)
 
@@ -142,39 +179,34 @@ class Check:
 
     def compare(self, here, shown, places):
         means = [picture[shown].mean() for picture in (self.cycles, here)]
-        scale, tolerance = max(means[0], 1e-9), self.wanted.tolerance
-        whole = difference(means, scale)
+        scale, tolerance = max(abs(means[0]), 1e-9), self.wanted.tolerance
+        whole = (means[1] - means[0]) / scale
         print(f"mean radiance of surfaces: Cycles {means[0]:.5g}, citylights {means[1]:.5g}, differing by {whole:+.1%}")
-        worst = []
+        compared = []
         for rows, columns, number in tiles(self.size):
             inside = shown[rows, columns]
-            if not inside.any():
-                continue
-            pair = [picture[rows, columns][inside].mean(axis=0) for picture in (self.cycles, here)]
-            scales = max(scale, pair[0].mean())
-            by = max((pair[1] - pair[0]) / scales, key=abs)
-            worst.append((abs(by), by, number, pair, places[rows, columns][inside].mean(axis=0)))
-        worst.sort(key=lambda tile: -tile[0])
-        outside = [tile for tile in worst if tile[0] > tolerance]
-        for _, by, (column, row), pair, place in outside[:TOLD]:
-            print(
-                f"  tile {column} from the left, {row} from the top, of {TILES[0]} x {TILES[1]}: Cycles "
-                f"{pair[0].mean():.4g}, citylights {pair[1].mean():.4g} ({by:+.0%} of the mean){self.nearest(place)}"
-            )
+            if inside.any():
+                pair = [picture[rows, columns][inside].mean(axis=0) for picture in (self.cycles, here)]
+                noise = NOISE * np.sqrt(self.variance[rows, columns][inside].sum(axis=0)) / inside.sum()
+                place = places[rows, columns][inside].mean(axis=0)
+                compared.append(Tile(number, pair, noise, max(scale, pair[0].mean()), place))
+        compared.sort(key=lambda tile: -abs(tile.worst()))
+        outside = [tile for tile in compared if tile.is_off(tolerance)]
+        for tile in outside[:TOLD]:
+            print(f"  {tile}{self.nearest(tile.place)}")
+        noise = max((tile.noise / tile.scale).max() for tile in compared)
+        print(f"Cycles' noise may be {noise:.1%} of a tile" + ("; give more --samples" if noise > tolerance else ""))
         if outside or abs(whole) > tolerance:
-            print(f"light differs by more than {tolerance:.1%} in {len(outside)} of {len(worst)} tiles")
+            print(f"light differs by more than {tolerance:.1%} in {len(outside)} of {len(compared)} tiles")
             return False
-        print(f"light agrees within {tolerance:.1%} in all {len(worst)} tiles; the worst is off by {worst[0][0]:.1%}")
+        worst = abs(compared[0].worst())
+        print(f"light agrees within {tolerance:.1%} and noise in all {len(compared)} tiles; the worst is off by {worst:.1%}")
         return True
 
     def nearest(self, place):
         """Which lamp or emitter of the scene as opened is nearest to a place."""
         away = [(float(np.linalg.norm(np.array(at) - place)), name) for name, at in self.found.sources]
         return "; nearest to it is `{1}`, {0:.3g} m off".format(*min(away)) if away else ""
-
-
-def difference(pair, scale):
-    return (pair[1] - pair[0]) / scale
 
 
 def tiles(size):
