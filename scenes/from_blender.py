@@ -7,7 +7,8 @@ It also runs inside an installed Blender: blender -b --python scenes/from_blende
 What it does is in the files of scenes/blender/ beside it.
 
 Cycles' rendering of the scene is what is right: what is hidden in renders or excluded gives no light, instances do, fields
-and plain nodes of lamps count (exposure, temperature, normalize, strength).
+and plain nodes of lamps count (exposure, temperature, normalize, strength). Where the scene is glTF, the edges of spots and
+the sides on which materials shine stay those of the file.
 
 What stays the same: geometry with modifiers and instances, cameras, the power of lamps (1 W/sr becomes 1 cd), base colours
 and emission of Principled, Emission and Diffuse shaders, also where they are added or mixed by numbers. What changes, with
@@ -60,7 +61,6 @@ def main(arguments):
         check.find(wanted.citylights)
     opened.open_scene(wanted.scene)
     notes = Notes()
-    # In glTF culling means that light comes from one side; in Cycles there is none.
     what = found.Found(wanted.scene.suffix.lower() in (".gltf", ".glb"), notes)
     picture = check.Check(what, wanted) if wanted.check else None
     quads = plain.replace(what, wanted.dim)

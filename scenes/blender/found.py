@@ -27,9 +27,9 @@ class Mesh(NamedTuple):
 class Found:
     """What a scene holds: cameras, lamps and quads that stand for lamps, meshes in the world, looks of materials."""
 
-    def __init__(self, culling_counts, notes):
+    def __init__(self, of_gltf, notes):
         scene = bpy.context.scene
-        self.notes, self.looks = notes, Looks(culling_counts, notes)
+        self.of_gltf, self.notes, self.looks = of_gltf, notes, Looks(of_gltf, notes)
         self.lamps, self.meshes, self.sources = [], [], []
         first = first_camera(scene)
         cameras = sorted((thing for thing in scene.objects if thing.type == "CAMERA"), key=lambda thing: thing != first)
@@ -68,7 +68,7 @@ class Found:
                 continue
             if thing.type == "LIGHT":
                 self.sources.append((thing.name, instance.matrix_world.to_translation()))
-                self.lamps += lamps.read(thing, instance.matrix_world, self.notes)
+                self.lamps += lamps.read(thing, instance.matrix_world, self.of_gltf, self.notes)
             elif thing.type in SURFACES:
                 self.mesh(thing, instance.matrix_world, graph)
             elif thing.type in ("CURVES", "POINTCLOUD", "VOLUME"):

@@ -41,8 +41,11 @@ class Quad(NamedTuple):
     radiance: tuple
 
 
-def read(thing, matrix, notes):
-    """What carries the light of the lamp object `thing` at `matrix`: a list, empty if it gives none."""
+def read(thing, matrix, of_gltf, notes):
+    """What carries the light of the lamp object `thing` at `matrix`: a list, empty if it gives none.
+
+    `of_gltf`: the file that Blender opened is glTF, whose spots go through Blender's fields and come out as they were.
+    """
     name, data = thing.name, thing.data
     if data.type == "AREA" and data.cycles.is_portal:
         return []
@@ -60,7 +63,7 @@ def read(thing, matrix, notes):
         return area(name, data, matrix, power, notes)
     upright = Matrix.LocRotScale(matrix.to_translation(), facing(-matrix.col[2].xyz), None)
     if data.type == "SPOT":
-        return [spot(name, data, matrix, upright, power, notes)]
+        return [spot(name, data, matrix, upright, power, of_gltf, notes)]
     return [Lamp(name, data.type, upright, power)]
 
 
@@ -93,8 +96,13 @@ def tell_of_linking(thing, notes):
         notes.add(thing.name, "lights that are linked to some objects", "they light all, and all block them")
 
 
-def spot(name, data, matrix, upright, power, notes):
+def spot(name, data, matrix, upright, power, of_gltf, notes):
     """A spot whose edge is as near to Blender's as glTF's comes, of the same flux and peak."""
+    if of_gltf:
+        if data.spot_blend > 0:
+            notes.add(name, "spots with a soft edge, as glTF has it", "carried as they were; Cycles shows them with another edge")
+        outer = data.spot_size / 2
+        return Lamp(name, "SPOT", upright, power, outer, outer * (1 - data.spot_blend))
     scale = [column.length for column in (matrix.col[0].xyz, matrix.col[1].xyz, matrix.col[2].xyz)]
     if min(scale) == 0:
         scale = [1, 1, 1]

@@ -63,8 +63,8 @@ class Look(NamedTuple):
 class Looks:
     """The looks of materials by their names, each read once."""
 
-    def __init__(self, culling_counts, notes):
-        self.culling_counts, self.notes, self.known, self.texels = culling_counts, notes, {}, {}
+    def __init__(self, of_gltf, notes):
+        self.of_gltf, self.notes, self.known, self.texels = of_gltf, notes, {}, {}
 
     def of(self, material):
         name = material.name_full if material else None
@@ -97,7 +97,7 @@ class Looks:
         if begin and begin.socket.node.inputs["Volume"].is_linked:
             self.note(name, "left out: volumes of materials", "citylights has none")
         culled = material.use_backface_culling and bool(sides)
-        if culled and self.culling_counts:
+        if culled and self.of_gltf:
             self.note(
                 name,
                 "emissive materials that are not double-sided",
@@ -109,7 +109,7 @@ class Looks:
                 "emissive materials with Backface Culling",
                 "they shine from both sides, as in Cycles, which has no culling; mix by Backfacing for light from one side",
             )
-        front = all(sides) or (culled and self.culling_counts)
+        front = all(sides) or (culled and self.of_gltf)
         return Look(tuple(base), tuple(glow), tuple(pictures), bool(sides) and front)
 
     def note(self, name, what, consequence):

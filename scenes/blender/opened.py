@@ -69,8 +69,9 @@ def as_rendered(read):
     scene.camera = first_camera(scene)
     engine, render = scene.render.engine, scene.render
     settings = {
-        "resolution_x": 8,
-        "resolution_y": 8,
+        "resolution_x": 64,
+        "resolution_y": 64,
+        "resolution_percentage": 100,
         "use_compositing": False,
         "use_sequencer": False,
         "use_single_layer": False,
