@@ -3,7 +3,7 @@
     python3.11 -m venv .venv && .venv/bin/pip install bpy numpy
     .venv/bin/python scenes/from_blender.py SCENE.{blend,fbx,usd,usdc,gltf,glb,obj} OUT.glb [--dim X] [--check]
 
-It also runs inside an installed Blender: blender -b --python scenes/from_blender.py -- SCENE OUT.glb
+It also runs inside an installed Blender, 4.5 or newer: blender -b --python scenes/from_blender.py -- SCENE OUT.glb
 What it does is in the files of scenes/blender/ beside it.
 
 Cycles' rendering of the scene is what is right: what is hidden in renders or excluded gives no light, instances do, fields

@@ -181,7 +181,8 @@ def spread(name, data, centre, across, along, direction, power, notes):
         name,
         "area lamps with a spread",
         f"of the same power, but glTF has no spread: {SPOTS_ALONG} x {SPOTS_ALONG} spots stand for each, off by up to 8 % of "
-        "their peak, by up to 22 % for spreads above 156 degrees, and their shadows have steps",
+        "their peak, by up to 22 % for spreads above 156 degrees; their shadows have steps, and the beams of a narrow spread "
+        "stand apart",
     )
     places = [(step + 0.5) / SPOTS_ALONG - 0.5 for step in range(SPOTS_ALONG)]
     return [

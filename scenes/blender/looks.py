@@ -129,9 +129,8 @@ class Looks:
         colour = part.input(key)
         value = colour.constant()
         if value is None:
-            picture = self.picture(colour, name)
-            if picture is None:
-                self.note(name, "base colours from nodes other than a picture", "grey of 0.5 here; bake them to a picture")
+            what = "base colours from nodes other than a picture", "grey of 0.5 here; bake them to a picture"
+            picture = self.picture(colour, name, what)
             value = UNKNOWN if picture is None else picture.texels.mean(axis=(0, 1))
         return rgb(tuple(value) if isinstance(value, np.ndarray) else value)
 
@@ -150,38 +149,36 @@ class Looks:
         if value == 0 or weight == 0 or hue == (0, 0, 0):
             return None, ()
         if value is None:
-            picture, value = self.picture(strength, name), 1.0
+            what = "left out: emission whose strength comes from nodes other than a picture"
+            picture, value = self.picture(strength, name, (what, "bake it to a picture, or give it a number")), 1.0
             if picture is None:
-                self.note(
-                    name,
-                    "left out: emission whose strength comes from nodes other than a picture",
-                    "bake it to a picture, or give it a number",
-                )
                 return None, ()
             shades = grey(tuple(np.moveaxis(picture.texels, 2, 0)))
             pictures.append(Picture(np.repeat(shades[..., None], 3, axis=2), picture.layer))
         if hue is None:
-            picture, hue = self.picture(colour, name), (1, 1, 1)
-            if picture is None:
-                self.note(
-                    name, "emission whose colour comes from nodes other than a picture", "taken as white; bake it to a picture"
-                )
-            else:
-                pictures.append(picture)
+            what = "emission whose colour comes from nodes other than a picture"
+            picture = self.picture(colour, name, (what, "taken as grey of 0.5; bake it to a picture"))
+            hue = UNKNOWN if picture is None else (1, 1, 1)
+            pictures += [] if picture is None else [picture]
         factor = tuple(weight * value * channel for channel in rgb(hue))
         if min(factor) < 0:
             self.note(name, "left out: emission of negative strength or colour", "glTF has none")
             return None, ()
         return factor, tuple(pictures)
 
-    def picture(self, where, name):
-        """The picture that feeds an input directly, or None."""
+    def picture(self, where, name, otherwise):
+        """The picture that feeds an input directly; None, and a note that says so, where something else does."""
         source, _ = where.source()
         if source is None or source[0].type != "TEX_IMAGE" or source[1] != "Color":
+            self.note(name, *otherwise)
             return None
         node, _, groups = source
         if node.image is None or node.image.size[0] == 0:
-            self.note(name, "pictures that are not there", "left out; Blender's File > External Data finds or packs them")
+            self.note(
+                name,
+                "pictures that are not there",
+                "grey of 0.5 stands for a colour, and emission masked by one is left out; File > External Data finds them",
+            )
             return None
         by, _ = Input(node.inputs["Vector"], groups).source()
         layer = by[0].uv_map if by and by[0].type == "UVMAP" else ""

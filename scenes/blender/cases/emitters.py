@@ -89,6 +89,17 @@ def noise(target):
     return lambda material, tree, shader, thing: feeds(tree, "ShaderNodeTexNoise", shader.inputs[target])
 
 
+def facing(material, tree, shader, thing):
+    feeds(tree, "ShaderNodeLayerWeight", shader.inputs["Emission Color"], "Facing")
+
+
+def of_file(material, tree, shader, thing):
+    """A picture whose file is not there."""
+    image = bpy.data.images.new("lost", 2, 2)
+    image.source, image.filepath = "FILE", "//nowhere.png"
+    feeds(tree, "ShaderNodeTexImage", shader.inputs["Emission Color"]).image = image
+
+
 def of_object(material, tree, shader, thing):
     """The material belongs to the object, another to its mesh."""
     thing.data.materials[0] = principled("dark")[0]
@@ -128,5 +139,6 @@ CASES = {
     "emission of a picture": Case(emitter(picture("Emission Color"), Emission_Color=(1, 1, 1, 1))),
     "emission masked by a picture": Case(emitter(picture("Emission Strength"))),
     "emission of noise": Case(emitter(noise("Emission Strength")), "left out: emission whose strength", agrees=False),
-    "emission coloured by noise": Case(emitter(noise("Emission Color")), "emission whose colour comes", agrees=False),
+    "emission coloured by a node": Case(emitter(facing), "emission whose colour comes", agrees=False),
+    "emission of a lost picture": Case(emitter(of_file), "pictures that are not there", agrees=False),
 }
