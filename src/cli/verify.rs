@@ -143,7 +143,7 @@ fn verify(
     if verifier.dim() > 0 {
         let all = options.receivers.min(stage.receivers().len());
         let dim = verifier.dim();
-        print(&format!("  {dim} of {all} receivers get less light than f32 holds with all its digits: no statistics there\n"))?;
+        print(&format!("  {dim} of {all} receivers get no more light than rounding may make: no statistics there\n"))?;
     }
     let mut image = gate::arithmetic(&stage, options.seed);
     image.extend(metamorphic.iter().flat_map(Metamorphic::image));

@@ -2,10 +2,10 @@
 
 use super::check::Check;
 use super::observe::Site;
+use super::truth::facing;
 use crate::base::colour::luminance;
 use crate::scene::Scene;
-use crate::scene::light::{Kind, Light, LightId};
-use crate::scene::receiver::Receiver;
+use crate::scene::light::LightId;
 use crate::shading::importance::importance;
 
 /// The check's name.
@@ -53,14 +53,4 @@ pub(super) fn coverage(scene: &Scene, sites: &[Site<'_>]) -> Check {
         first.map_or_else(String::new, |(.., share)| format!("; this one is {:.3} % of the radiance", share * 100.0));
     let detail = format!("lights that add something and cannot be chosen, of {hypotheses}{share}");
     Check::new(COVERAGE, missing as f64, 0.0, detail).at(first.map(|first| first.1), first.map(|first| first.0))
-}
-
-/// What would arrive of a light at most if the surface faced it, about: infinite of a directional one, which has no distance.
-fn facing(light: &Light, at: &Receiver) -> f64 {
-    let away2 = match light.kind() {
-        Kind::Directional => 0.0,
-        Kind::Triangle => light.corners().iter().map(|corner| corner.distance_squared(at.position)).fold(f32::MAX, f32::min),
-        Kind::Point | Kind::Spot => light.position.distance_squared(at.position),
-    };
-    f64::from(light.peak_intensity().max_element()) / f64::from(away2)
 }

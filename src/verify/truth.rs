@@ -22,7 +22,12 @@ pub(crate) struct Truth {
     total: f64,
     /// What could arrive with nothing in between, about.
     open: f64,
+    /// The least that is more than rounding.
+    least: f64,
 }
+
+/// A surface that a light just grazes gets what rounding leaves of it, as a share of what it would get facing the light.
+const GRAZING: f64 = 1e-7;
 
 impl Truth {
     /// Evaluates every light of the scene, whatever the stage leaves out, with `points` points shared out among
@@ -34,6 +39,9 @@ impl Truth {
         let weigh = |light: &Light| f64::from(importance(light, at));
         let total: f64 = all().map(|(light, _)| weigh(light)).sum();
         let open = lights.iter().map(weigh).sum::<f64>() * f64::from(luminance(at.albedo)) / PI;
+        let most: f64 = lights.iter().map(|light| facing(light, at)).sum();
+        // Below its least normal number f32 loses digits.
+        let least = (GRAZING * most).max(lights.len() as f64 * f64::from(f32::MIN_POSITIVE));
         let mut mean = vec![0.0; lights.len()];
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
             *value = grey(shadowed(stage, stage.light_sampling(), at, light, [0.0; 2], &mut rays));
@@ -51,7 +59,7 @@ impl Truth {
             }
         }
         let total = mean.iter().sum();
-        Self { triangles, mean, total, open }
+        Self { triangles, mean, total, open, least }
     }
 
     /// What each light adds.
@@ -64,9 +72,9 @@ impl Truth {
         self.total
     }
 
-    /// Whether some light arrives, but less than f32 holds with all its digits.
+    /// Whether some light arrives, but no more than rounding may make.
     pub(super) fn dim(&self) -> bool {
-        self.total > 0.0 && self.total < self.mean.len() as f64 * f64::from(f32::MIN_POSITIVE)
+        self.total > 0.0 && self.total < self.least
     }
 
     /// How much arrives of what could, about: the rest is in shadow.
@@ -93,6 +101,21 @@ impl Truth {
         }
         Moments::of(repeats)
     }
+}
+
+/// The radiance that would come of a light at most if the surface faced it, with nothing in between.
+pub(super) fn facing(light: &Light, at: &Receiver) -> f64 {
+    let over = |away2: f32| f64::from(luminance(light.peak_intensity())) / f64::from(away2.max(f32::MIN_POSITIVE));
+    let irradiance = match light.kind() {
+        Kind::Directional => f64::from(luminance(light.colour)),
+        Kind::Point | Kind::Spot => over(light.position.distance_squared(at.position)),
+        Kind::Triangle => {
+            let corners = light.corners().map(|corner| corner.distance_squared(at.position));
+            // One that fills the sky gives pi times its radiance.
+            over(corners.into_iter().fold(f32::MAX, f32::min)).min(PI * f64::from(luminance(light.colour)))
+        }
+    };
+    irradiance * f64::from(luminance(at.albedo)) / PI
 }
 
 /// Luminance in f64. A weight is one number for all channels, so one number tells all.

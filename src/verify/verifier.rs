@@ -25,7 +25,7 @@ pub struct Verifier<'a> {
     pub(super) options: VerifyOptions,
     pub(super) receivers: Vec<Receiver>,
     pub(super) truths: Vec<Truth>,
-    /// How many of them, the first, get more light than f32 can tell from nothing.
+    /// How many of them, the first, get more light than rounding may make.
     bright: usize,
     /// The same with other numbers and more of them, made when first needed.
     second: OnceLock<Box<Self>>,
@@ -52,7 +52,7 @@ impl<'a> Verifier<'a> {
         (&self.receivers[..self.bright], &self.truths[..self.bright])
     }
 
-    /// How many receivers get some light, but less than f32 can tell from nothing: statistics leave them out.
+    /// How many receivers get some light, but no more than rounding may make: statistics leave them out.
     pub(crate) fn dim(&self) -> usize {
         self.receivers.len() - self.bright
     }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `cli` | every verb: its mistakes, its exit codes, its bytes |
 //! | `killed` | a run that is killed at any moment goes on to the same rows |
+//! | `measurable` | what can be measured is, and what cannot is said instead of ranked |
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
 //! | `export` | exports are written whole or not at all |
@@ -23,6 +24,7 @@ mod diff_image;
 mod export;
 mod killed;
 mod lecture;
+mod measurable;
 mod peers;
 mod processes;
 mod said;

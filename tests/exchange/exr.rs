@@ -274,3 +274,38 @@ fn thousands_of_broken_files_are_errors_and_no_panics() {
     }
     assert!(whole > 100 && broken > 1000, "{whole} were read, {broken} refused");
 }
+
+#[test]
+fn other_primaries_are_turned_into_those_of_rec_709() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |names: &[&str], chromaticities: Option<attribute::Chromaticities>| {
+        let mut attributes = ImageAttributes::new(IntegerBounds::new(Vec2(0, 0), SIZE));
+        attributes.chromaticities = chromaticities;
+        let image = Image { attributes, layer_data: Layers::from_iter([plain(names)]) };
+        let mut bytes = Vec::new();
+        image.write().non_parallel().to_buffered(Cursor::new(&mut bytes)).expect("encoded");
+        read(folder.path(), &bytes)
+    };
+    let rec_709 = attribute::Chromaticities {
+        red: Vec2(0.64, 0.33),
+        green: Vec2(0.30, 0.60),
+        blue: Vec2(0.15, 0.06),
+        white: Vec2(0.3127, 0.3290),
+    };
+    // Rec. 2020: the first row of its matrix, from ITU-R BT.2087, is 1.6605, -0.5876, -0.0728.
+    let wide = attribute::Chromaticities {
+        red: Vec2(0.708, 0.292),
+        green: Vec2(0.170, 0.797),
+        blue: Vec2(0.131, 0.046),
+        ..rec_709
+    };
+    let rgb = ["R", "G", "B"];
+    assert_is_ours(&of(&rgb, Some(rec_709)).expect("read"), "Rec. 709");
+    let found = of(&rgb, Some(wide)).expect("read").pixels[5][0];
+    let wanted = 1.6605 * value(5, 0) - 0.5876 * value(5, 1) - 0.0728 * value(5, 2);
+    assert!((found - wanted).abs() < 2e-3 * wanted.abs() && found != value(5, 0), "{found} for {wanted}");
+    let grey = of(&["Y"], Some(wide)).expect("read").pixels[5];
+    assert_eq!(grey, [value(5, 7); 3], "grey has no primaries");
+    let line = attribute::Chromaticities { green: rec_709.red, ..rec_709 };
+    assert!(of(&rgb, Some(line)).expect_err("no colours").to_string().contains("chromaticities"));
+}

@@ -1,6 +1,7 @@
 //! An EXR file as a picture.
 
 use super::channels::{Chosen, choose};
+use super::primaries::to_rec_709;
 use crate::base::error::{Error, Result};
 use crate::image::bound::Bound;
 use crate::image::picture::Picture;
@@ -13,6 +14,7 @@ use ::exr::meta::attribute::{IntegerBounds, SampleType};
 use ::exr::meta::header::Header;
 use ::exr::meta::{BlockDescription, MetaData};
 use ::exr::prelude::f16;
+use glam::Vec3;
 use std::collections::HashSet;
 use std::fmt::Display;
 use std::fs::File;
@@ -27,7 +29,7 @@ const BLOCK_BYTES: usize = 64;
 /// (`albedo.R`), or of several the one called `Combined`; else `Y` alone as grey.
 ///
 /// 16-bit floats and whole numbers are widened. The picture is the file's display window: pixels of it without data
-/// are 0, data outside it are left. Of several resolutions the largest is taken. What the header claims is checked
+/// are 0, data outside it are left. Colours of other primaries than those of Rec. 709 are turned into these. Of several resolutions the largest is taken. What the header claims is checked
 /// before memory is taken for it.
 ///
 /// # Errors
@@ -52,6 +54,7 @@ fn picture(file: impl Read + Seek, bound: Bound) -> std::result::Result<Picture,
     if part.deep {
         return Err("deep data: flatten it first".into());
     }
+    let matrix = part.shared_attributes.chromaticities.as_ref().map(to_rec_709).transpose()?.flatten();
     let mut canvas = Canvas::new(part, chosen, bound)?;
     let wanted = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
         block.layer == chosen.part && tile.is_largest_resolution_level()
@@ -60,7 +63,14 @@ fn picture(file: impl Read + Seek, bound: Bound) -> std::result::Result<Picture,
         .filter_chunks(false, wanted)
         .and_then(|chunks| chunks.decompress_sequential(false, |data, block| canvas.put(data, &block)))
         .map_err(text)?;
-    Ok(canvas.picture)
+    let Canvas { mut picture, chosen, .. } = canvas;
+    // Grey is grey in all.
+    if let Some(matrix) = matrix.filter(|_| chosen.rgb[0] != chosen.rgb[1]) {
+        for pixel in &mut picture.pixels {
+            *pixel = (matrix * Vec3::from(*pixel).as_dvec3()).as_vec3().to_array();
+        }
+    }
+    Ok(picture)
 }
 
 /// What an error says.

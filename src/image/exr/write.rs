@@ -1,18 +1,11 @@
 //! A picture as an EXR file.
 
+use super::primaries::REC_709;
 use crate::base::error::{Error, Result};
 use crate::image::picture::Picture;
-use ::exr::meta::attribute::{Chromaticities, Text};
+use ::exr::meta::attribute::Text;
 use ::exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
 use std::io::Cursor;
-
-/// What linear RGB means here: the primaries and the white of Rec. 709 (ITU-R BT.709).
-const REC_709: Chromaticities = Chromaticities {
-    red: Vec2(0.64, 0.33),
-    green: Vec2(0.30, 0.60),
-    blue: Vec2(0.15, 0.06),
-    white: Vec2(0.3127, 0.329),
-};
 
 /// The bytes of an EXR file with 32-bit channels R, G and B, losslessly compressed; the same picture gives the same
 /// bytes.
