@@ -5,6 +5,7 @@
 //! | `cli` | every verb: its mistakes, its exit codes, its bytes |
 //! | `killed` | a run that is killed at any moment goes on to the same rows |
 //! | `measurable` | what can be measured is, and what cannot is said instead of ranked |
+//! | `mutated` | whatever stands in results, vectors and cached references, it is read or refused |
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
 //! | `export` | exports are written whole or not at all |
@@ -16,6 +17,9 @@
 
 mod bounds;
 #[cfg(feature = "cli")]
+#[path = "../common/broken.rs"]
+mod broken;
+#[cfg(feature = "cli")]
 #[path = "../common/pictures.rs"]
 mod pictures;
 
@@ -25,6 +29,7 @@ mod export;
 mod killed;
 mod lecture;
 mod measurable;
+mod mutated;
 mod peers;
 mod processes;
 mod said;

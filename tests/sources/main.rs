@@ -19,6 +19,9 @@
 //!
 //! Memory is watched for each thread by itself, so that tests that look at it may run beside others.
 
+#[cfg(feature = "cli")]
+#[path = "../common/broken.rs"]
+mod broken;
 #[path = "../common/mod.rs"]
 mod common;
 #[cfg(feature = "cli")]

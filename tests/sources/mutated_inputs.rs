@@ -1,14 +1,15 @@
-//! Promise: whatever bytes stand in a scene file, it is read or refused: no panic, no hang, no memory out of proportion.
+//! Promise: whatever bytes stand in a scene file or a picture, it is read or refused: no panic, no hang, no memory out of proportion.
 //!
 //! Whole files are broken in many ways: bytes flipped, cut out, doubled and swapped, numbers replaced, values of the JSON
 //! exchanged. `CITYLIGHTS_MUTATIONS` is how many of each format are tried; `cargo test` tries few.
 #![cfg(feature = "cli")]
 
+use crate::broken::{NUMBERS, below, broken};
 use crate::foreign_made::{coordinates, jpeg, panel, png, texture};
 use crate::made::{File, glb};
 use citylights::base::error::{Error, Result};
 use citylights::base::random::Stream;
-use citylights::scene::Scene;
+use citylights::image::{self, Picture};
 use citylights::sources::{Overrides, gltf, recipe};
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,88 +23,6 @@ const LONGEST: u32 = 10_000;
 /// How many mutants of each format.
 fn wanted() -> u64 {
     std::env::var("CITYLIGHTS_MUTATIONS").map_or(3_000, |text| text.parse().expect("a number of mutants"))
-}
-
-/// Numbers at which readers break.
-const NUMBERS: [&str; 33] = [
-    "0",
-    "1",
-    "-1",
-    "2",
-    "3",
-    "4",
-    "7",
-    "255",
-    "256",
-    "65535",
-    "65536",
-    "2147483647",
-    "4294967295",
-    "4294967296",
-    "9223372036854775807",
-    "18446744073709551615",
-    "99999999999999999999999",
-    "0.5",
-    "-0.0",
-    "1e-320",
-    "1e38",
-    "1e39",
-    "1e308",
-    "1e999",
-    "nan",
-    "null",
-    "inf",
-    "true",
-    "0.1",
-    "89.9999999",
-    "1e7",
-    "5e-324",
-    "18446744073709551616",
-];
-
-/// One of many, at random.
-fn below(stream: &mut Stream, n: usize) -> usize {
-    ((stream.uniform64() * n as f64) as usize).min(n.saturating_sub(1))
-}
-
-/// Breaks bytes in one to four places, half of the time in one.
-fn broken(stream: &mut Stream, mut bytes: Vec<u8>) -> Vec<u8> {
-    for _ in 0..=below(stream, 4) * below(stream, 2) {
-        let at = below(stream, bytes.len());
-        let end = (at + 1 + below(stream, 40)).min(bytes.len());
-        match below(stream, 13) {
-            0 => bytes.get_mut(at).into_iter().for_each(|byte| *byte ^= 1 << below(stream, 8)),
-            1 => bytes.get_mut(at).into_iter().for_each(|byte| *byte = below(stream, 256) as u8),
-            2 => drop(bytes.drain(at..end)),
-            3 => bytes.splice(at..at, bytes[at..end].to_vec()).for_each(drop),
-            4 if below(stream, 4) == 0 => bytes.truncate(at),
-            5 => {
-                let from = below(stream, bytes.len());
-                let piece = bytes[from..(from + end - at).min(bytes.len())].to_vec();
-                bytes.splice(at..end, piece).for_each(drop);
-            }
-            6 => {
-                let word = [0u32, 1, 0xff, 0xffff, 0x7f80_0000, 0x7fc0_0000, 0xffff_ffff][below(stream, 7)];
-                bytes.iter_mut().skip(at).zip(word.to_le_bytes()).for_each(|(byte, new)| *byte = new);
-            }
-            // The rest of the line, dropped or doubled.
-            7 => {
-                let end = bytes.iter().skip(at).position(|&byte| byte == b'\n').map_or(end, |length| at + length);
-                let twice = bytes[at..end].repeat(2 * below(stream, 2));
-                bytes.splice(at..end, twice).for_each(drop);
-            }
-            _ => number(stream, &mut bytes, at),
-        }
-    }
-    bytes
-}
-
-/// Replaces the first number from `at` on.
-fn number(stream: &mut Stream, bytes: &mut Vec<u8>, at: usize) {
-    let part = |byte: &u8| byte.is_ascii_digit() || b".+-eE_".contains(byte);
-    let Some(from) = bytes.iter().skip(at).position(u8::is_ascii_digit).map(|from| from + at) else { return };
-    let end = from + bytes[from..].iter().take_while(|byte| part(byte)).count();
-    bytes.splice(from..end, NUMBERS[below(stream, NUMBERS.len())].bytes()).for_each(drop);
 }
 
 /// Every value below a JSON value, as pointers.
@@ -274,11 +193,11 @@ radiance = [5, 50]
 "#;
 
 /// Reads `wanted` mutants of a whole file, each named by its number; how many were read and how many refused.
-fn run(
+fn run<T>(
     format: &str,
     whole: &[u8],
     mutant: impl Fn(&mut Stream) -> Vec<u8>,
-    read: impl Fn(&[u8]) -> Result<Scene> + Sync,
+    read: impl Fn(&[u8]) -> Result<T> + Sync,
 ) {
     let (mut read_in, mut refused, begun) = (0, 0, Instant::now());
     // Memory is watched on one thread: nothing is done on another.
@@ -370,4 +289,25 @@ fn mutated_cities_are_read_or_refused() {
         |stream| broken(stream, CITY.into()),
         |bytes| recipe::parse(&String::from_utf8_lossy(bytes), "mutant.toml".as_ref(), &few),
     );
+}
+
+#[test]
+fn mutated_pictures_are_read_or_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pixels = (0..24 * 10).map(|i| [i as f32 * 0.01, 1.0, 0.25]).collect();
+    let picture = Picture { width: 24, height: 10, pixels };
+    for (format, name) in [("EXR", "picture.exr"), ("PNG", "picture.png")] {
+        let path = folder.path().join(name);
+        image::write(&path, &picture, 1.0).expect("written");
+        let whole = std::fs::read(&path).expect("a file");
+        run(
+            format,
+            &whole,
+            |stream| broken(stream, whole.clone()),
+            |bytes| {
+                std::fs::write(&path, bytes).expect("written");
+                image::read(&path)
+            },
+        );
+    }
 }

@@ -21,6 +21,9 @@ pub(super) const REC_709: Chromaticities = Chromaticities {
 /// Chromaticities that differ by less are those of Rec. 709, rounded: such files stay as they are to the bit.
 const ROUNDED: f32 = 2e-3;
 
+/// Twice the area of a triangle of primaries below which they lie on a line, but for rounding. That of Rec. 709 is 0.22.
+const FLAT: f64 = 1e-5;
+
 /// What turns colours of these primaries into Rec. 709; `None` where they are those.
 ///
 /// # Errors
@@ -32,7 +35,7 @@ pub(super) fn to_rec_709(of: &Chromaticities) -> Result<Option<DMat3>, String> {
         return Ok(None);
     }
     let matrix = to_xyz(&REC_709).inverse() * adapted(of.white, REC_709.white) * to_xyz(of);
-    if !matrix.is_finite() {
+    if !matrix.is_finite() || triangle(of).determinant().abs() < FLAT {
         return Err(format!("its chromaticities span no colours: {of:?}"));
     }
     Ok(Some(matrix))
@@ -44,11 +47,15 @@ fn xyz(Vec2(x, y): Vec2<f32>) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
+/// The primaries as columns of coordinates whose sum is 1: a blue of y = 0, as ACES nearly has, divides by nothing.
+fn triangle(of: &Chromaticities) -> DMat3 {
+    let column = |Vec2(x, y): Vec2<f32>| DVec3::new(f64::from(x), f64::from(y), 1.0 - f64::from(x) - f64::from(y));
+    DMat3::from_cols(column(of.red), column(of.green), column(of.blue))
+}
+
 /// Linear colours to CIE XYZ: (1, 1, 1) is the white.
 fn to_xyz(of: &Chromaticities) -> DMat3 {
-    // The sum of coordinates is 1 for each: a blue of y = 0, as ACES nearly has, divides by nothing.
-    let column = |Vec2(x, y): Vec2<f32>| DVec3::new(f64::from(x), f64::from(y), 1.0 - f64::from(x) - f64::from(y));
-    let primaries = DMat3::from_cols(column(of.red), column(of.green), column(of.blue));
+    let primaries = triangle(of);
     primaries * DMat3::from_diagonal(primaries.inverse() * xyz(of.white))
 }
 
