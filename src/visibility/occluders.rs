@@ -97,25 +97,25 @@ impl Occluders {
         let ray = ray(origin, along, t_min, t_max);
         let meet = Triangle::any_meet(&ray);
         let mut free = true;
-        self.boxes.walk(&ray, |i| {
+        self.boxes.walk(&ray, |i, _| {
             let t = meet(&self.triangles[i], &ray);
-            free = !(t < t_max) || segment.passes_over(&self.triangles[i], t, self.rounding);
-            if free { ControlFlow::Continue(t_max) } else { ControlFlow::Break(()) }
+            free = t >= t_max || segment.passes_over(&self.triangles[i], t, self.rounding);
+            if free { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         free
     }
 
     /// The first thing on a ray and its distance, which is that of the triangle's place nearest to the ray.
     pub fn first(&self, origin: Vec3, direction: DVec3) -> Option<(Met, f64)> {
-        let mut ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
+        let ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
         let meet = Triangle::any_meet(&ray);
         let mut nearest = None;
-        self.boxes.walk(&ray.clone(), |i| {
+        self.boxes.walk(&ray, |i, end| {
             let t = meet(&self.triangles[i], &ray);
-            if t < ray.tmax {
-                (nearest, ray.tmax) = (Some(i), t);
+            if t < *end {
+                (nearest, *end) = (Some(i), t);
             }
-            ControlFlow::Continue(ray.tmax)
+            ControlFlow::Continue(())
         });
         nearest.map(|i| (self.met[i], self.triangles[i].depth(origin.as_dvec3(), direction)))
     }
@@ -138,13 +138,13 @@ impl<const DEEP: usize> pulp::NullaryFnOnce for Way<'_, DEEP> {
         let (mut free, mut last) = (true, (0, f32::INFINITY));
         let ray = ray(origin, along, t_min, t_max);
         let view = View::<DEEP>::new(&ray);
-        boxes.walk(&ray, |i| {
+        boxes.walk(&ray, |i, _| {
             let t = triangles[i].meet(&ray, &view);
             if t < t_max {
                 (free, last) = (false, (i, t));
                 return ControlFlow::Break(());
             }
-            ControlFlow::Continue(t_max)
+            ControlFlow::Continue(())
         });
         (free, last)
     }

@@ -89,10 +89,10 @@ impl Pairs {
         size_of_val(&self.pairs[..])
     }
 
-    /// Asks each triangle whose box a ray passes, about from the nearest on, up to where each answer says that the ray
-    /// ends from then on, until one stops it.
+    /// Asks each triangle whose box a ray passes, about from the nearest on, until one stops it; an answer may let the ray
+    /// end sooner from then on.
     #[inline(always)]
-    pub(super) fn walk(&self, ray: &Ray, ask: impl FnMut(usize) -> ControlFlow<(), f32>) {
+    pub(super) fn walk(&self, ray: &Ray, ask: impl FnMut(usize, &mut f32) -> ControlFlow<()>) {
         fast_stack!(u32, (96, 192), self.depth, stack, { self.walk_with(&mut stack, ray, ask) });
     }
 
@@ -101,22 +101,11 @@ impl Pairs {
         &self,
         stack: &mut impl FastStack<u32>,
         ray: &Ray,
-        mut ask: impl FnMut(usize) -> ControlFlow<(), f32>,
+        mut ask: impl FnMut(usize, &mut f32) -> ControlFlow<()>,
     ) {
         let origin = [0, 1, 2].map(|axis| Vec4::splat(ray.origin[axis]));
         let inverse = [0, 1, 2].map(|axis| Vec4::splat(ray.inv_direction[axis]));
-        let mut end = ray.tmax;
-        // Whether a box is passed and holds a pair; its triangles are asked at once.
-        let mut visit = |below: Below, is_passed: bool, end: &mut f32| {
-            if !is_passed || below.count == PAIR {
-                return ControlFlow::Continue(is_passed);
-            }
-            for i in below.first..below.first + below.count {
-                *end = ask(i as usize)?;
-            }
-            ControlFlow::Continue(false)
-        };
-        let mut current = 0;
+        let (mut end, mut current) = (ray.tmax, 0);
         loop {
             let pair = &self.pairs[current as usize];
             let [x, y, z] = [0, 1, 2].map(|axis| (pair.sides[axis] - origin[axis]) * inverse[axis]);
@@ -124,16 +113,21 @@ impl Pairs {
             let near = smaller(x).max(smaller(y)).max(smaller(z)).max(Vec4::ZERO);
             let far = larger(x).min(larger(y)).min(larger(z)) * SLACK;
             let passed = (near.cmple(far) & near.cmplt(Vec4::splat(end))).bitmask();
-            let [mut first, mut second] =
-                [(pair.below[0], near.x, passed & 1 != 0), (pair.below[1], near.y, passed & 2 != 0)];
-            if first.1 > second.1 {
+            let (mut first, mut second) = ((pair.below[0], passed & 1 != 0), (pair.below[1], passed & 2 != 0));
+            if near.x > near.y {
                 (first, second) = (second, first);
             }
-            let ControlFlow::Continue(go_first) = visit(first.0, first.2, &mut end) else { return };
-            let ControlFlow::Continue(go_second) = visit(second.0, second.2 && second.1 < end, &mut end) else {
-                return;
-            };
-            current = match (go_first, go_second) {
+            for (below, is_open) in [&mut first, &mut second] {
+                if *is_open && below.count != PAIR {
+                    for i in below.first..below.first + below.count {
+                        if ask(i as usize, &mut end).is_break() {
+                            return;
+                        }
+                    }
+                    *is_open = false;
+                }
+            }
+            current = match (first.1, second.1) {
                 (true, true) => {
                     stack.push(second.0.first);
                     first.0.first

@@ -20,6 +20,8 @@ pub(super) struct Crossing {
     /// the rim of an open mesh, or a fold. Everywhere else, triangles on both sides keep a ray that is moved by less than the
     /// margin from passing.
     pub(super) outline: bool,
+    /// How flat it meets those that it meets or whose edges are that near, at the flattest: the cosine to the normal.
+    pub(super) flat: f64,
 }
 
 impl<'a> Exactly<'a> {
@@ -39,12 +41,13 @@ impl<'a> Exactly<'a> {
         let aside = |place: DVec3| from(place) - unit * from(place).dot(unit);
         let corner = |i: usize| self.mesh.corners[i];
         // Edges near the ray, the lower number first, each with on which side its triangle's third corner is.
-        let (mut met, mut edges) = (Vec::new(), Vec::new());
+        let (mut met, mut edges, mut flat) = (Vec::new(), Vec::new(), f64::INFINITY);
         for (nth, &(middle, radius)) in self.balls.iter().enumerate() {
             if aside(middle).length_squared() > (radius + 2.0 * margin).powi(2) {
                 continue;
             }
             let [a, b, c] = self.mesh.triangles[nth];
+            let before = (met.len(), edges.len());
             let sides = [(b, c), (c, a), (a, b)].map(|(p, q)| side(along, origin, corner(p), corner(q)));
             let area = sides.iter().sum::<f64>();
             if area != 0.0 && (sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)) {
@@ -61,10 +64,14 @@ impl<'a> Exactly<'a> {
                     edges.push((p, q, side(along, corner(p), corner(q), corner(third))));
                 }
             }
+            if before != (met.len(), edges.len()) {
+                flat = flat.min(self.cosine(nth, unit));
+            }
         }
         edges.sort_by_key(|&(p, q, _)| (p, q));
         let is_inner = |of: &[(usize, usize, f64)]| matches!(of, [(_, _, one), (_, _, other)] if one * other < 0.0);
-        Crossing { met, outline: !edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(is_inner) }
+        let outline = !edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(is_inner);
+        Crossing { met, outline, flat }
     }
 
     /// How far a place is from a triangle.
@@ -77,8 +84,7 @@ impl<'a> Exactly<'a> {
         over.min(edge(a, b)).min(edge(b, c)).min(edge(c, a))
     }
 
-    /// How flat a unit direction meets a triangle: the cosine to its normal.
-    pub(super) fn cosine(&self, triangle: usize, unit: DVec3) -> f64 {
+    fn cosine(&self, triangle: usize, unit: DVec3) -> f64 {
         let [a, b, c] = self.mesh.triangles[triangle].map(|i| self.mesh.corners[i].as_dvec3());
         (b - a).cross(c - a).normalize().dot(unit).abs()
     }

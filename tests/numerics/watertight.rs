@@ -147,11 +147,16 @@ impl Told {
         for (direction, met) in ways {
             let Some((Met::Surface(index), t)) = met else { continue };
             let place = origin.as_dvec3() + direction * t;
-            let flat = mesh.cosine(nearest.0, unit).min(mesh.cosine(index as usize, unit));
             let (far, right) = (t * direction.length(), nearest.1 * along.as_dvec3().length());
             // Which is the first of two is known no better than to a few units of the distance.
-            let is_off = (far - right).abs() > margin / flat + 4.0 * f64::from(f32::EPSILON) * right;
-            self.displaced += u64::from(is_off || mesh.distance(index as usize, place) > margin);
+            let is_off = (far - right).abs() > margin / exact.flat + 4.0 * f64::from(f32::EPSILON) * right;
+            let aside = mesh.distance(index as usize, place);
+            if is_off || aside > margin {
+                println!(
+                    "{origin} along {along}: triangle {index} at {far} m, not {nearest:?}; {aside} of {margin} m beside it"
+                );
+                self.displaced += 1;
+            }
         }
     }
 }
@@ -187,7 +192,8 @@ fn told(meshes: u64, rays: u64) -> Told {
             let target = mesh.place(&mut stream, |_| true) + aside * [0.0, 0.0, 0.0, 1e-6, 3.0][stream.below(5)];
             let apart = DVec3::from_array([0; 3].map(|_| stream.uniform64() - 0.5));
             let (origin, is_inside) = match nth % 4 {
-                // The centre and around it.
+                // Just behind the surface; the centre and around it.
+                1 if stream.below(3) == 0 => (mesh.place(&mut stream, |_| true) * 0.999 / f64::from(size), true),
                 1 => (apart * [0.0, 0.2][stream.below(2)], true),
                 2 => (apart.normalize() * (2.0 + 8.0 * stream.uniform64()), false),
                 3 => (far(&mut stream, apart), false),
