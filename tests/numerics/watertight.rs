@@ -92,7 +92,7 @@ fn a_roof_of_two_triangles_has_no_gap_along_its_diagonal() {
 }
 
 /// What came of rays that an exact predicate was asked about.
-#[derive(Default, Debug)]
+#[derive(Clone, Copy, Default, Debug)]
 struct Told {
     rays: u64,
     /// Met something and nothing, as was right.
@@ -183,7 +183,7 @@ fn far(stream: &mut Stream, apart: DVec3) -> DVec3 {
 fn told(meshes: u64, rays: u64) -> Told {
     let of = |nth: u64| {
         let mut stream = Stream::keyed(&[nth, u64::from_le_bytes(*b"exactly\0")]);
-        let mesh = if nth % 4 == 0 { sheet(&mut stream).0 } else { closed(&mut stream) };
+        let mesh = if nth.is_multiple_of(4) { sheet(&mut stream).0 } else { closed(&mut stream) };
         let (occluders, exactly, size) = (mesh.occluders(), Exactly::new(&mesh), mesh.size());
         let mut told = Told::default();
         for _ in 0..rays {
