@@ -102,7 +102,7 @@ fn questions(stage: &Stage) -> Vec<Question> {
 }
 
 fn shadow_rays(criterion: &mut Criterion<Reported>, stage: &Stage, questions: &[Question]) {
-    let (bvh, corners) = stage.occluders().parts();
+    let (bvh, corners) = stage.occluders().bare();
     let triangles: Vec<RtTriangle> = corners.into_iter().map(|[a, b, c]| RtTriangle::new(a, b, c)).collect();
     let segment = |question: &Question| {
         let Question { from, light, to } = question;

@@ -36,14 +36,13 @@ pub(super) enum Asked {
 
 /// A binary hierarchy over boxes given by their corners.
 ///
-/// Boxes are padded by a few units in the last place, since the slab test has no error bound of its own. The builder
+/// Boxes are padded by a few units in the last place, since rounding moves a triangle as a ray sees it. The builder
 /// merges boxes that are nearest to each other. Of equal boxes, or of a straight even row in which each finds its left
 /// neighbour as near as any, it merges one pair a pass: thousands would take quadratic time and become a list instead of a
 /// tree. So all are grown a little, each in its own directions, and more where they occur more than [`ALIKE`] times.
 ///
 /// No padding reaches farther than a shadow ray's start keeps off its surface, or nearly: rays that start within the boxes of
-/// their own surface took a fifth longer. So a ray that starts a thousand times as far from the origin as a fine mesh is large
-/// may be rounded past a box that it meets.
+/// their own surface took a fifth longer. What grows with the distance is up to the ray ([`Pairs`](super::pairs)).
 pub(super) fn build(corners: impl Iterator<Item = (Vec3, Vec3)>, asked: Asked) -> Bvh2 {
     let mut boxes: Vec<Aabb> = corners.map(|(low, high)| pad(low, high)).collect();
     let alike = separate(&mut boxes);

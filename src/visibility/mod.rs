@@ -4,6 +4,7 @@ mod bvh;
 pub mod influence_tree;
 pub mod occluders;
 pub mod offset;
+mod pairs;
 pub(crate) mod reach;
 pub(crate) mod russian_roulette;
 pub mod stage;

@@ -4,12 +4,13 @@
 
 use super::bvh::{self, Asked};
 use super::offset::{self, Segment};
+use super::pairs::Pairs;
 use super::triangle::{Triangle, View};
 use crate::scene::Scene;
 use crate::scene::light::{Kind, LightId};
 use glam::{DVec3, Vec3, Vec3A};
-use obvhs::bvh2::Bvh2;
-use obvhs::ray::{Ray, RayHit};
+use obvhs::ray::Ray;
+use std::ops::ControlFlow;
 
 /// What a ray met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub enum Met {
 
 /// Everything that blocks light.
 pub struct Occluders {
-    bvh: Bvh2,
+    boxes: Pairs,
     /// In the hierarchy's order.
     triangles: Vec<Triangle>,
     /// What each of `triangles` is.
@@ -46,7 +47,7 @@ impl Occluders {
         let met = order().map(|i| met[i]).collect();
         let all = bvh::around(boxes());
         let rounding = if corners.is_empty() { 0.0 } else { offset::rounding(all.diagonal().into()) };
-        Self { bvh, triangles, met, rounding }
+        Self { boxes: Pairs::new(&bvh), triangles, met, rounding }
     }
 
     /// How many triangles there are.
@@ -61,16 +62,17 @@ impl Occluders {
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&self.bvh.nodes[..])
-            + size_of_val(&self.bvh.primitive_indices[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.met[..])
+        self.boxes.heap_bytes() + size_of_val(&self.triangles[..]) + size_of_val(&self.met[..])
     }
 
-    /// The hierarchy and its triangles in its order, for a measurement of the bare library.
+    /// The library's hierarchy of the same triangles, and these in its order, for a measurement of the bare library.
     #[cfg(feature = "bench")]
-    pub(crate) fn parts(&self) -> (&Bvh2, Vec<[Vec3A; 3]>) {
-        (&self.bvh, self.triangles.iter().map(Triangle::corners).collect())
+    pub(crate) fn bare(&self) -> (obvhs::bvh2::Bvh2, Vec<[Vec3A; 3]>) {
+        let corners: Vec<[Vec3A; 3]> = self.triangles.iter().map(Triangle::corners).collect();
+        let boxes = corners.iter().map(|[a, b, c]| (a.min(*b).min(*c).into(), a.max(*b).max(*c).into()));
+        let bvh = bvh::build(boxes, Asked::Rays);
+        let ordered = bvh.primitive_indices.iter().map(|&i| corners[i as usize]).collect();
+        (bvh, ordered)
     }
 
     /// Whether nothing lies on the segment, but what it passes over.
@@ -94,25 +96,28 @@ impl Occluders {
         let &Segment { origin, along, t_min, t_max, .. } = segment;
         let ray = ray(origin, along, t_min, t_max);
         let meet = Triangle::any_meet(&ray);
-        self.bvh.ray_traverse_miss(ray, |ray, i| {
-            let t = meet(&self.triangles[i], ray);
-            let passed = t < ray.tmax && segment.passes_over(&self.triangles[i], t, self.rounding);
-            if passed { f32::INFINITY } else { t }
-        })
+        let mut free = true;
+        self.boxes.walk(&ray, |i, _| {
+            let t = meet(&self.triangles[i], &ray);
+            free = t >= t_max || segment.passes_over(&self.triangles[i], t, self.rounding);
+            if free { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        free
     }
 
-    /// The first thing on a ray and its distance, which is exact to f32 rounding of the triangle's plane.
+    /// The first thing on a ray and its distance, which is that of the triangle's place nearest to the ray.
     pub fn first(&self, origin: Vec3, direction: DVec3) -> Option<(Met, f64)> {
         let ray = ray(origin, direction.as_vec3(), 0.0, f32::INFINITY);
-        // A fresh record: a used one would turn a miss of the root into a hit.
-        let mut hit = RayHit::none();
         let meet = Triangle::any_meet(&ray);
-        if !self.bvh.ray_traverse(ray, &mut hit, |ray, i| meet(&self.triangles[i], ray)) {
-            return None;
-        }
-        let index = hit.primitive_id as usize;
-        let t = self.triangles[index].depth(origin.as_dvec3(), direction);
-        Some((self.met[index], if t.is_finite() { t } else { f64::from(hit.t) }))
+        let mut nearest = None;
+        self.boxes.walk(&ray, |i, end| {
+            let t = meet(&self.triangles[i], &ray);
+            if t < *end {
+                (nearest, *end) = (Some(i), t);
+            }
+            ControlFlow::Continue(())
+        });
+        nearest.map(|i| (self.met[i], self.triangles[i].depth(origin.as_dvec3(), direction)))
     }
 }
 
@@ -129,14 +134,17 @@ impl<const DEEP: usize> pulp::NullaryFnOnce for Way<'_, DEEP> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let &Segment { origin, along, t_min, t_max, .. } = self.segment;
-        let Occluders { bvh, triangles, .. } = self.occluders;
-        let mut last = (0, f32::INFINITY);
+        let Occluders { boxes, triangles, .. } = self.occluders;
+        let (mut free, mut last) = (true, (0, f32::INFINITY));
         let ray = ray(origin, along, t_min, t_max);
         let view = View::<DEEP>::new(&ray);
-        let free = bvh.ray_traverse_miss(ray, |ray, i| {
-            let t = triangles[i].meet(ray, &view);
-            last = (i, t);
-            t
+        boxes.walk(&ray, |i, _| {
+            let t = triangles[i].meet(&ray, &view);
+            if t < t_max {
+                (free, last) = (false, (i, t));
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
         });
         (free, last)
     }

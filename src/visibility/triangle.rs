@@ -54,11 +54,32 @@ impl Triangle {
         [0, 1, 2].map(|corner| Vec3A::new(x[corner], y[corner], z[corner]))
     }
 
-    /// Where the line of a ray meets its plane, in multiples of the direction; infinite or no number where it does not.
+    /// Where the line of a ray that [meets](Self::meet) it does so, in multiples of the direction: on its plane.
+    ///
+    /// A triangle that looks too thin for f64 to tell is met at the place of its edges nearest to the line. So is one that the
+    /// line passes beside, by less than the rounding of f32: the plane of one that is seen edge on lies anywhere.
     pub(super) fn depth(&self, origin: DVec3, direction: DVec3) -> f64 {
-        let corner = Vec3::from(self.corners()[0]).as_dvec3();
-        let normal = Vec3::from(self.normal).as_dvec3();
-        normal.dot(corner - origin) / normal.dot(direction)
+        let corners = self.corners().map(|corner| Vec3::from(corner).as_dvec3());
+        let [a, b, c] = corners.map(|corner| corner - origin);
+        let edges = [(a, b), (b, c), (c, a)];
+        let sides = edges.map(|(p, q)| direction.dot(p.cross(q - p)));
+        let (ab, ac) = (corners[1] - corners[0], corners[2] - corners[0]);
+        let (normal, size) = (ab.cross(ac), ab.length_squared() + ac.length_squared());
+        let area = normal.dot(direction);
+        let is_within = sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0);
+        if is_within && area.abs() > 1e-8 * direction.length() * size {
+            return normal.dot(a) / area;
+        }
+        let along = |place: DVec3| place.dot(direction) / direction.length_squared();
+        let nearest = edges.map(|(p, q)| {
+            let [start, end] = [p, q].map(|place| place - along(place) * direction);
+            let way = end - start;
+            let share = (-start.dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            ((start + share * way).length_squared(), along(p.lerp(q, share)))
+        });
+        let [first, second, third] = nearest;
+        let nearer = |a: (f64, f64), b: (f64, f64)| if b.0 < a.0 { b } else { a };
+        nearer(nearer(first, second), third).1
     }
 
     /// [`meet`](Self::meet), whatever the direction of the ray.

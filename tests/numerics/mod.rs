@@ -7,12 +7,19 @@
 //! | `shading` | what a point adds is nothing or a sound number |
 //! | `visibility` | shadow rays against a slow tracer in f64, and the traps of offsets and slabs |
 //! | `watertight` | no ray passes between triangles that share an edge or a corner |
+//! | `lone_triangle` | a ray and one triangle, against Moller and Trumbore's test in f64, however thin it is |
+//! | `predicate`, `crossing` | where a line passes an edge and a mesh, exactly |
+//! | `meshes` | meshes at random for these |
 //! | `translation` | where a scene stands and how large it is changes nothing |
 //! | `extreme` | every strategy stays finite, positive and right in `scenes/extreme` |
 //! | `stability` | the verb shows where arithmetic breaks and that ours does not |
 
+mod crossing;
 mod extreme;
 mod light_sampling;
+mod lone_triangle;
+mod meshes;
+mod predicate;
 mod shading;
 mod stability;
 mod translation;

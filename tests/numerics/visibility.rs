@@ -36,15 +36,23 @@ fn occluders(surfaces: Vec<Surface>) -> (Scene, Occluders) {
 }
 
 /// Where a segment stands to one triangle, in f64 (Moller and Trumbore 1997).
-#[derive(Clone, Copy, PartialEq)]
-enum Verdict {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
     Hit,
     Miss,
     /// Within the tolerance of an edge of the triangle or an end of the segment.
     Near,
 }
 
-fn moller_trumbore([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3, length: f64, tolerance: f64) -> Verdict {
+/// And where its line meets the plane, in multiples of its unit direction; with how far a shift of it by the tolerance moves
+/// that.
+pub(super) fn moller_trumbore(
+    [a, b, c]: [DVec3; 3],
+    origin: DVec3,
+    direction: DVec3,
+    length: f64,
+    tolerance: f64,
+) -> (Verdict, f64, f64) {
     let (e1, e2) = (b - a, c - a);
     let p = direction.cross(e2);
     let det = e1.dot(p);
@@ -52,7 +60,8 @@ fn moller_trumbore([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3, lengt
     let cosine = det.abs() / area;
     if cosine < 1e-12 {
         // Parallel to the plane: near only if it runs in it.
-        return if e1.cross(e2).dot(origin - a).abs() < tolerance * area { Verdict::Near } else { Verdict::Miss };
+        let is_near = e1.cross(e2).dot(origin - a).abs() < tolerance * area;
+        return (if is_near { Verdict::Near } else { Verdict::Miss }, f64::NAN, f64::INFINITY);
     }
     let s = origin - a;
     let u = s.dot(p) / det;
@@ -64,13 +73,14 @@ fn moller_trumbore([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3, lengt
     let heights = [u * area / e2.length(), v * area / e1.length(), (1.0 - u - v) * area / (c - b).length()];
     let inside = heights.into_iter().fold(f64::INFINITY, f64::min);
     let along = t.min(length - t);
-    if inside < -reach || along < -reach {
+    let verdict = if inside < -reach || along < -reach {
         Verdict::Miss
     } else if inside > reach && along > reach {
         Verdict::Hit
     } else {
         Verdict::Near
-    }
+    };
+    (verdict, t, reach)
 }
 
 #[test]
@@ -112,7 +122,7 @@ fn a_hundred_thousand_segments_agree_with_a_tracer_in_f64() {
                 continue;
             }
             for triangle in chunk {
-                match moller_trumbore(*triangle, origin, along, f64::from(length), tolerance) {
+                match moller_trumbore(*triangle, origin, along, f64::from(length), tolerance).0 {
                     Verdict::Hit => wanted = Verdict::Hit,
                     Verdict::Near if wanted == Verdict::Miss => wanted = Verdict::Near,
                     _ => {}
