@@ -42,7 +42,8 @@ pub(crate) fn read(path: &Path, pixels: Option<usize>) -> Result<Picture> {
         file: path.to_owned(),
         line: None,
         field: String::new(),
-        message: format!("not an EXR picture that can be read: {why}"),
+        // Names of channels and attributes are whatever the file says.
+        message: format!("not an EXR picture that can be read: {}", why.escape_debug()),
     })
 }
 
