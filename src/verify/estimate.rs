@@ -90,13 +90,10 @@ impl<'a> Distance<'a> {
         let sites = &seen.sites;
         let level = sidak(options.level, sites.len() + 1);
         let wanted: Vec<Moments> = sites.iter().map(Site::wanted).collect();
-        let each = sites
-            .iter()
-            .zip(&wanted)
-            .map(|(site, wanted)| {
-                let missing = site.unseen().missing(level);
-                Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some(), missing)
-            });
+        let each = sites.iter().zip(&wanted).map(|(site, wanted)| {
+            let missing = site.unseen().missing(level);
+            Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some(), missing)
+        });
         // Receivers draw from streams of their own: their moments add.
         let sum = |of: fn(&Moments) -> f64| wanted.iter().map(of).sum::<f64>();
         let n = wanted.first().map_or(2, |wanted| wanted.n);
@@ -104,8 +101,7 @@ impl<'a> Distance<'a> {
         let (covered, variance) = (sum(|wanted| wanted.mean), sum(|wanted| wanted.variance));
         let of_all = Moments { n, mean: covered, variance };
         let model = sites.iter().map(Site::model).fold([0.0; 3], |[a, b, c], [x, y, z]| [a + x, b + y, c + z]);
-        let mean =
-            Difference::of(&sums(sites, |batch| batch.frequent), of_all, model, told, seen.image.missing(level));
+        let mean = Difference::of(&sums(sites, |batch| batch.frequent), of_all, model, told, seen.image.missing(level));
         Self { sites, each: each.collect(), mean, covered }
     }
 

@@ -75,7 +75,8 @@ fn mutated_references_are_taken_or_made_anew() {
     Command::cargo_bin("citylights").expect("the binary").args(arguments).assert().success();
     let whole = fs::read(&picture).expect("a picture");
     let tile = fs::read_dir(at("cache")).expect("a cache").map(|entry| entry.expect("a file").path());
-    let tile = tile.filter(|path| path.is_file()).max_by_key(|path| path.metadata().expect("there").len()).expect("a tile");
+    let tile =
+        tile.filter(|path| path.is_file()).max_by_key(|path| path.metadata().expect("there").len()).expect("a tile");
     let good = fs::read(&tile).expect("a tile");
     let mut refused = 0;
     for number in 0..wanted() {
@@ -88,7 +89,9 @@ fn mutated_references_are_taken_or_made_anew() {
         let output = output.expect("a process");
         let said = String::from_utf8_lossy(&output.stderr);
         match output.status.code() {
-            Some(0) => assert!(fs::read(&picture).expect("a picture") == whole, "mutant {number} changed the picture: {said}"),
+            Some(0) => {
+                assert!(fs::read(&picture).expect("a picture") == whole, "mutant {number} changed the picture: {said}")
+            }
             Some(2) => refused += 1,
             _ => panic!("mutant {number}: {}\n{said}", output.status),
         }

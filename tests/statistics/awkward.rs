@@ -153,9 +153,7 @@ pub(super) fn failures(scene: &Scene, options: VerifyOptions) -> Vec<String> {
 #[test]
 fn right_strategies_pass_where_statistics_are_hard() {
     let options = VerifyOptions { receivers: 8, draws: 4_000, level: 2e-3, ..VerifyOptions::default() };
-    let failed: Vec<String> = all()
-        .into_iter()
-        .flat_map(|parts| failures(&Scene::new(parts).expect("a scene"), options))
-        .collect();
+    let failed: Vec<String> =
+        all().into_iter().flat_map(|parts| failures(&Scene::new(parts).expect("a scene"), options)).collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

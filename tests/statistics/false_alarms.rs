@@ -52,7 +52,8 @@ fn right_strategies_pass_the_gate_of_a_hundred_comparisons() {
 /// others: `citylights verify scenes/extreme/one-in-a-million.toml` looks at it.
 fn scenes() -> Vec<Scene> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let extreme = std::fs::read_dir(folder.join("extreme")).expect("a folder").map(|entry| entry.expect("a file").path());
+    let extreme =
+        std::fs::read_dir(folder.join("extreme")).expect("a folder").map(|entry| entry.expect("a file").path());
     let mut files: Vec<_> = extreme.filter(|file| !file.ends_with("one-in-a-million.toml")).collect();
     files.sort();
     files.push(folder.join("first-night.toml"));
@@ -68,11 +69,15 @@ fn right_strategies_pass_a_hundred_runs_of_verify() {
     for run in 0..COMPARISONS {
         let scene = &scenes[run as usize % scenes.len()];
         let level = sidak(0.01, chances).sqrt();
-        let found = failures(scene, VerifyOptions { receivers: 16, seed: 1_000 + run, level, ..VerifyOptions::default() });
+        let found =
+            failures(scene, VerifyOptions { receivers: 16, seed: 1_000 + run, level, ..VerifyOptions::default() });
         found.iter().for_each(|line| println!("{line}"));
         alarms += usize::from(!found.is_empty());
     }
     let seconds = clock.elapsed().as_secs_f64() / COMPARISONS as f64;
-    println!("{alarms} of {COMPARISONS} runs accused a right strategy, on {} scenes; {seconds:.1} CPU s a run", scenes.len());
+    println!(
+        "{alarms} of {COMPARISONS} runs accused a right strategy, on {} scenes; {seconds:.1} CPU s a run",
+        scenes.len()
+    );
     assert!(alarms <= MOST);
 }
