@@ -1,4 +1,4 @@
-//! Which known names come near a misspelt one.
+//! Which known names come near a misspelt one, and how is a name of a file told?
 
 /// The names in `known` that resemble `given`, nearest first and four at most; none where none does.
 pub(crate) fn near<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<String> {
@@ -31,6 +31,15 @@ pub(super) fn told(near: &[String], known: &[impl AsRef<str>]) -> String {
         1..=LISTED => format!("; there are {}", list(&known)),
         all => format!("; there are {} and {} more", list(&known[..LISTED]), all - LISTED),
     }
+}
+
+/// The text with whatever would disturb a terminal escaped.
+pub(crate) fn printable(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() { out.extend(c.escape_debug()) } else { out.push(c) }
+    }
+    out
 }
 
 #[cfg(test)]

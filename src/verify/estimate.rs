@@ -90,18 +90,22 @@ impl<'a> Distance<'a> {
         let sites = &seen.sites;
         let level = sidak(options.level, sites.len() + 1);
         let wanted: Vec<Moments> = sites.iter().map(Site::wanted).collect();
-        let each = sites.iter().zip(&wanted).map(|(site, wanted)| {
-            let missing = site.unseen().missing(level);
-            Difference::of(&site.frequent(), *wanted, site.model(), site.expected().is_some(), missing)
+        let told = |site: &Site<'_>| site.expected().is_some();
+        let missing: Vec<Missing> = sites.iter().map(|site| site.unseen().missing(level)).collect();
+        let each = sites.iter().zip(wanted.iter().zip(&missing)).map(|(site, (wanted, missing))| {
+            Difference::of(&site.frequent(), *wanted, site.model(), told(site), *missing)
         });
         // Receivers draw from streams of their own: their moments add.
         let sum = |of: fn(&Moments) -> f64| wanted.iter().map(of).sum::<f64>();
         let n = wanted.first().map_or(2, |wanted| wanted.n);
-        let told = sites.iter().all(|site| site.expected().is_some());
         let (covered, variance) = (sum(|wanted| wanted.mean), sum(|wanted| wanted.variance));
         let of_all = Moments { n, mean: covered, variance };
         let model = sites.iter().map(Site::model).fold([0.0; 3], |[a, b, c], [x, y, z]| [a + x, b + y, c + z]);
-        let mean = Difference::of(&sums(sites, |batch| batch.frequent), of_all, model, told, seen.image.missing(level));
+        // Receivers may share what a pass decides: what each may have missed adds up.
+        let too_high = missing.iter().map(|missing| missing.too_high).sum();
+        let of_image = Missing { too_high, ..seen.image.missing(level) };
+        let batches = sums(sites, |batch| batch.frequent);
+        let mean = Difference::of(&batches, of_all, model, sites.iter().all(told), of_image);
         Self { sites, each: each.collect(), mean, covered }
     }
 
@@ -159,7 +163,7 @@ pub(super) fn estimate(seen: &Seen<'_>, options: &VerifyOptions) -> [Check; 2] {
     let detail = format!(
         "|t| of the mean over receivers: {:+.4} % off; detectable {:.3} %{}, seed {}",
         percent * mean.value,
-        percent * ((limit + 0.85) * mean.variance.sqrt() + mean.missing.too_high),
+        percent * ((limit + 0.85) * mean.variance.sqrt() + mean.missing.too_high.max(mean.missing.too_low)),
         mean.not_shown(percent),
         options.seed
     );

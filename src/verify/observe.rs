@@ -9,7 +9,7 @@ use super::pool::{Bin, Pool};
 use super::steady::{Steady, toss};
 use super::subject::Subject;
 use super::truth::{Truth, grey};
-use super::unseen::Unseen;
+use super::unseen::{Unseen, calls_to_tell};
 use crate::base::statistics::{Moments, skewness, unskewed};
 use crate::render::exact::shadowed;
 use crate::scene::receiver::Receiver;
@@ -65,7 +65,7 @@ pub(super) struct Site<'a> {
 /// What was seen at all receivers.
 pub(super) struct Seen<'a> {
     pub(super) sites: Vec<Site<'a>>,
-    /// Of each pass the sum over receivers, as of a call.
+    /// Of each pass, the sum over receivers of what its call there comes to: as if the image were one receiver.
     pub(super) image: Unseen,
 }
 
@@ -252,10 +252,15 @@ pub(super) fn seen<'a>(subject: &Subject<'a>) -> Seen<'a> {
     } else {
         options.draws as f64 * (FRAME as f64 / frame.len().max(1) as f64).min(1.0)
     };
+    let mut counts = told(subject);
     let batches = ((draws / most) as usize).clamp(FEWEST, (options.batches as usize).max(FEWEST)) as u32;
-    let calls: Vec<u32> =
-        per_call.iter().map(|a_call| ((draws / a_call / f64::from(batches)).ceil() as u32).max(1)).collect();
-    let counts = counts(subject, &calls.iter().map(|calls| calls * batches).collect::<Vec<_>>());
+    let calls = per_call.iter().zip(&counts).map(|(a_call, counts)| {
+        // So many that what they may not have shown is little.
+        let least = if counts.told { 1.0 } else { calls_to_tell(options.level) };
+        ((draws / a_call).max(least) / f64::from(batches)).ceil().max(1.0) as u32
+    });
+    let calls: Vec<u32> = calls.collect();
+    pilot(subject, &mut counts, &calls.iter().map(|calls| calls * batches).collect::<Vec<_>>());
     let mut sites: Vec<Site<'a>> = (subject.receivers.iter().zip(subject.truths))
         .zip(calls.iter().zip(counts))
         .map(|((at, truth), (&calls, Counts { counts, told }))| {
@@ -318,15 +323,19 @@ struct Counts {
     told: bool,
 }
 
-fn counts(subject: &Subject<'_>, calls: &[u32]) -> Vec<Counts> {
+/// As the sampler tells them.
+fn told(subject: &Subject<'_>) -> Vec<Counts> {
     let lights = subject.stage.scene().lights().len();
-    let mut counts: Vec<Counts> = (subject.receivers.iter())
-        .map(|at| {
-            let mut counts = vec![0.0; lights];
-            let told = subject.sampler.expected_counts(at, &mut counts);
-            Counts { counts, told }
-        })
-        .collect();
+    let of = |at| {
+        let mut counts = vec![0.0; lights];
+        let told = subject.sampler.expected_counts(at, &mut counts);
+        Counts { counts, told }
+    };
+    subject.receivers.iter().map(of).collect()
+}
+
+/// Where it does not, as so many calls show them.
+fn pilot(subject: &Subject<'_>, counts: &mut [Counts], calls: &[u32]) {
     if counts.iter().any(|counts| !counts.told) {
         counts.iter_mut().filter(|counts| !counts.told).for_each(|counts| counts.counts.fill(0.0));
         run(subject, PILOT, calls, |site, _, buffer| {
@@ -346,7 +355,6 @@ fn counts(subject: &Subject<'_>, calls: &[u32]) -> Vec<Counts> {
             counts.iter_mut().for_each(|count| *count = if *count < least { 0.0 } else { *count / calls as f32 });
         }
     }
-    counts
 }
 
 /// Degrees of freedom of what was measured between batches.

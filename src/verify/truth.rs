@@ -3,6 +3,7 @@
 use crate::base::colour::luminance;
 use crate::base::random::Stream;
 use crate::base::statistics::Moments;
+use crate::base::triangle::nearest_squared;
 use crate::render::exact::{grid_side, shadowed, stratified};
 use crate::scene::light::{Kind, Light};
 use crate::scene::receiver::Receiver;
@@ -39,9 +40,6 @@ impl Truth {
         let weigh = |light: &Light| f64::from(importance(light, at));
         let total: f64 = all().map(|(light, _)| weigh(light)).sum();
         let open = lights.iter().map(weigh).sum::<f64>() * f64::from(luminance(at.albedo)) / PI;
-        let most: f64 = lights.iter().map(|light| facing(light, at)).sum();
-        // Below its least normal number f32 loses digits.
-        let least = (GRAZING * most).max(lights.len() as f64 * f64::from(f32::MIN_POSITIVE));
         let mut mean = vec![0.0; lights.len()];
         for (value, light) in mean.iter_mut().zip(lights).filter(|(_, light)| light.kind() != Kind::Triangle) {
             *value = grey(shadowed(stage, stage.light_sampling(), at, light, [0.0; 2], &mut rays));
@@ -59,6 +57,11 @@ impl Truth {
             }
         }
         let total = mean.iter().sum();
+        // What is hidden, or turned away, is exactly 0.
+        let most: f64 =
+            lights.iter().zip(&mean).filter(|(_, mean)| **mean > 0.0).map(|(light, _)| facing(light, at)).sum();
+        // Below its least normal number f32 loses digits.
+        let least = (GRAZING * most).max(lights.len() as f64 * f64::from(f32::MIN_POSITIVE));
         Self { triangles, mean, total, open, least }
     }
 
@@ -109,11 +112,9 @@ pub(super) fn facing(light: &Light, at: &Receiver) -> f64 {
     let irradiance = match light.kind() {
         Kind::Directional => f64::from(luminance(light.colour)),
         Kind::Point | Kind::Spot => over(light.position.distance_squared(at.position)),
-        Kind::Triangle => {
-            let corners = light.corners().map(|corner| corner.distance_squared(at.position));
-            // One that fills the sky gives pi times its radiance.
-            over(corners.into_iter().fold(f32::MAX, f32::min)).min(PI * f64::from(luminance(light.colour)))
-        }
+        // One that fills the sky gives pi times its radiance.
+        Kind::Triangle => over(nearest_squared(light.position - at.position, light.a, light.b))
+            .min(PI * f64::from(luminance(light.colour))),
     };
     irradiance * f64::from(luminance(at.albedo)) / PI
 }

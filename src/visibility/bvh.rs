@@ -11,7 +11,8 @@ use std::time::Duration;
 
 /// What a hierarchy is asked, which decides how much work its build is worth and how many boxes share a leaf.
 ///
-/// Measured on one thread of an EPYC (Zen 5) at x86-64's baseline; `downtown`, in brackets `metropolis`:
+/// Measured on one thread of an EPYC (Zen 5) at x86-64's baseline, by the library's own walk; `downtown`, in brackets
+/// `metropolis`:
 ///
 /// | asked | leaf | fast | medium | very slow |
 /// |---|---|---|---|---|

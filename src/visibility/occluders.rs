@@ -1,6 +1,6 @@
 //! Is there anything between two points?
 //!
-//! Surfaces and emissive triangles, both from both sides, in one `obvhs` hierarchy of binary nodes.
+//! Surfaces and emissive triangles, both from both sides, in one binary hierarchy that `obvhs` builds.
 
 use super::bvh::{self, Asked};
 use super::offset::{self, Segment};
@@ -154,8 +154,7 @@ impl<const DEEP: usize> pulp::NullaryFnOnce for Way<'_, DEEP> {
 ///
 /// The library turns a direction component under 1.2e-7 into an inverse of 8.4e6, so that a ray along an axis leaves a
 /// box 84 m after it came within 1e-5 m of its side. Here the inverse of such a component is 1e30: finite, so that
-/// 0 * inverse stays 0. Adding zero turns -0 into +0, which the library's wide hierarchy takes for a negative
-/// direction in one place and not in the other.
+/// 0 * inverse stays 0. Adding zero turns -0 into +0: both leave a box by the same side.
 #[inline]
 fn ray(origin: Vec3, direction: Vec3, t_min: f32, t_max: f32) -> Ray {
     let direction = Vec3A::from(direction) + Vec3A::ZERO;

@@ -18,7 +18,14 @@ fn wanted() -> u64 {
     std::env::var("CITYLIGHTS_MUTATIONS").map_or(60, |text| text.parse().expect("a number of mutants"))
 }
 
-/// Runs the program on mutants of a file, in 2 GB of addresses; each ends by itself, with 0, 1 or 2.
+/// The program in 2 GB of addresses.
+fn limited() -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v 2000000; exec \"$@\"", "sh"]).arg(assert_cmd::cargo::cargo_bin("citylights"));
+    command
+}
+
+/// Runs the program on mutants of a file; each ends by itself, with 0, 1 or 2.
 fn run(kind: &str, file: &Path, arguments: &[&str]) {
     let whole = fs::read(file).expect("a file");
     let (mut codes, mut longest) = ([0u64; 3], Duration::ZERO);
@@ -26,9 +33,7 @@ fn run(kind: &str, file: &Path, arguments: &[&str]) {
         let bytes = broken(&mut Stream::keyed(&[2, number]), whole.clone());
         fs::write(file, &bytes).expect("written");
         let begun = Instant::now();
-        let mut command = Command::new("sh");
-        command.args(["-c", "ulimit -v 2000000; exec \"$@\"", "sh"]).arg(assert_cmd::cargo::cargo_bin("citylights"));
-        let output = command.args(arguments).timeout(LONGEST).output().expect("a process");
+        let output = limited().args(arguments).timeout(LONGEST).output().expect("a process");
         let (text, said) = (String::from_utf8_lossy(&bytes), String::from_utf8_lossy(&output.stderr));
         let code = output.status.code().filter(|code| (0..3).contains(code));
         let code = code.unwrap_or_else(|| panic!("{kind} mutant {number}: {}\n{said}\n{text}", output.status));
@@ -78,24 +83,25 @@ fn mutated_references_are_taken_or_made_anew() {
     let tile =
         tile.filter(|path| path.is_file()).max_by_key(|path| path.metadata().expect("there").len()).expect("a tile");
     let good = fs::read(&tile).expect("a tile");
-    let mut refused = 0;
+    let (mut refused, mut anew) = (0, 0);
     for number in 0..wanted() {
         let bytes = broken(&mut Stream::keyed(&[3, number]), good.clone());
         if bytes == good {
             continue;
         }
         fs::write(&tile, &bytes).expect("written");
-        let output = Command::cargo_bin("citylights").expect("the binary").args(arguments).timeout(LONGEST).output();
-        let output = output.expect("a process");
+        let output = limited().args(arguments).timeout(LONGEST).output().expect("a process");
         let said = String::from_utf8_lossy(&output.stderr);
         match output.status.code() {
             Some(0) => {
-                assert!(fs::read(&picture).expect("a picture") == whole, "mutant {number} changed the picture: {said}")
+                assert!(fs::read(&picture).expect("a picture") == whole, "mutant {number} changed the picture: {said}");
+                anew += u64::from(fs::read(&tile).expect("a tile") == good);
             }
             Some(2) => refused += 1,
             _ => panic!("mutant {number}: {}\n{said}", output.status),
         }
         fs::write(&tile, &good).expect("written");
     }
-    println!("references: {refused} of {} refused, the others made anew", wanted());
+    println!("references: {refused} of {} refused, {anew} made anew", wanted());
+    assert!(refused + anew > wanted() / 2, "damage was not noticed: {refused} refused, {anew} made anew");
 }

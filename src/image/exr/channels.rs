@@ -19,6 +19,13 @@ pub(super) struct Chosen {
     pub(super) rgb: [usize; 3],
 }
 
+impl Chosen {
+    /// Whether one channel stands for all three.
+    pub(super) fn is_grey(&self) -> bool {
+        self.rgb[0] == self.rgb[1]
+    }
+}
+
 /// How many channels a message lists.
 const LISTED: usize = 40;
 

@@ -21,7 +21,8 @@ pub(super) const REC_709: Chromaticities = Chromaticities {
 /// Chromaticities that differ by less are those of Rec. 709, rounded: such files stay as they are to the bit.
 const ROUNDED: f32 = 2e-3;
 
-/// Twice the area of a triangle of primaries below which they lie on a line, but for rounding. That of Rec. 709 is 0.22.
+/// Primaries whose triangle has less than half this area lie on a line, but for rounding (that of Rec. 709 has 0.11); so
+/// do a white and two primaries where colours fill less of their space.
 const FLAT: f64 = 1e-5;
 
 /// What turns colours of these primaries into Rec. 709; `None` where they are those.
@@ -35,7 +36,8 @@ pub(super) fn to_rec_709(of: &Chromaticities) -> Result<Option<DMat3>, String> {
         return Ok(None);
     }
     let matrix = to_xyz(&REC_709).inverse() * adapted(of.white, REC_709.white) * to_xyz(of);
-    if !matrix.is_finite() || triangle(of).determinant().abs() < FLAT {
+    let flat = |matrix: DMat3| matrix.determinant().abs() < FLAT;
+    if !matrix.is_finite() || flat(triangle(of)) || flat(matrix) {
         return Err(format!("its chromaticities span no colours: {of:?}"));
     }
     Ok(Some(matrix))
@@ -118,6 +120,7 @@ mod tests {
         for line in [
             Chromaticities { green: Vec2(0.64, 0.33), ..REC_709 },
             Chromaticities { white: Vec2(0.3, 0.0), ..REC_709 },
+            Chromaticities { white: REC_709.red, ..REC_709 },
             Chromaticities { red: Vec2(f32::NAN, 0.3), ..REC_709 },
         ] {
             assert!(to_rec_709(&line).is_err(), "{line:?}");

@@ -3,6 +3,7 @@
 use super::channels::{Chosen, choose};
 use super::primaries::to_rec_709;
 use crate::base::error::{Error, Result};
+use crate::base::names::printable;
 use crate::image::bound::Bound;
 use crate::image::picture::Picture;
 use ::exr::block::chunk::TileCoordinates;
@@ -43,7 +44,7 @@ pub(crate) fn read(path: &Path, pixels: Option<usize>) -> Result<Picture> {
         line: None,
         field: String::new(),
         // Names of channels and attributes are whatever the file says.
-        message: format!("not an EXR picture that can be read: {}", why.escape_debug()),
+        message: format!("not an EXR picture that can be read: {}", printable(&why)),
     })
 }
 
@@ -55,7 +56,9 @@ fn picture(file: impl Read + Seek, bound: Bound) -> std::result::Result<Picture,
     if part.deep {
         return Err("deep data: flatten it first".into());
     }
-    let matrix = part.shared_attributes.chromaticities.as_ref().map(to_rec_709).transpose()?.flatten();
+    // Grey is grey in all.
+    let primaries = part.shared_attributes.chromaticities.as_ref().filter(|_| !chosen.is_grey());
+    let matrix = primaries.map(to_rec_709).transpose()?.flatten();
     let mut canvas = Canvas::new(part, chosen, bound)?;
     let wanted = |_: &MetaData, tile: TileCoordinates, block: BlockIndex| {
         block.layer == chosen.part && tile.is_largest_resolution_level()
@@ -64,9 +67,8 @@ fn picture(file: impl Read + Seek, bound: Bound) -> std::result::Result<Picture,
         .filter_chunks(false, wanted)
         .and_then(|chunks| chunks.decompress_sequential(false, |data, block| canvas.put(data, &block)))
         .map_err(text)?;
-    let Canvas { mut picture, chosen, .. } = canvas;
-    // Grey is grey in all.
-    if let Some(matrix) = matrix.filter(|_| chosen.rgb[0] != chosen.rgb[1]) {
+    let mut picture = canvas.picture;
+    if let Some(matrix) = matrix {
         for pixel in &mut picture.pixels {
             *pixel = (matrix * Vec3::from(*pixel).as_dvec3()).as_vec3().to_array();
         }

@@ -4,6 +4,7 @@
 
 use super::document::Document;
 use crate::base::error::{Error, Result};
+use crate::base::names::printable;
 use base64::Engine;
 use base64::alphabet;
 use base64::engine::DecodePaddingMode;
@@ -239,13 +240,4 @@ fn beside(uri: &str) -> Option<PathBuf> {
 
 fn number(bytes: &[u8]) -> u32 {
     u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
-}
-
-/// The text with whatever would disturb a terminal escaped.
-fn printable(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        if c.is_control() { out.extend(c.escape_debug()) } else { out.push(c) }
-    }
-    out
 }
