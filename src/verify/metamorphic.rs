@@ -122,8 +122,8 @@ impl<'a> Metamorphic<'a> {
                 let tolerance = 1e-3 * change.factor() as f32 * scale + 0.02;
                 there.get(&at.pixel).copied().filter(|there| there.position.distance(place) < tolerance)
             };
-            let receivers = whole.receivers.iter().filter_map(same).copied().collect();
-            Verifier::at(stage, receivers, options)
+            let receivers: Vec<Receiver> = whole.receivers.iter().filter_map(same).copied().collect();
+            Verifier::at(stage, &receivers, options)
         });
         Self { changed: changed.collect(), whole }
     }

@@ -34,11 +34,11 @@ pub struct Verifier<'a> {
 impl<'a> Verifier<'a> {
     /// Finds the truth at `options.receivers` receivers of a stage.
     pub fn new(stage: &'a Stage, options: VerifyOptions) -> Self {
-        Self::at(stage, spread(stage.receivers(), options.receivers), options)
+        Self::at(stage, &spread(stage.receivers(), options.receivers), options)
     }
 
     /// Finds the truth at receivers of a stage.
-    pub(super) fn at(stage: &'a Stage, receivers: Vec<Receiver>, options: VerifyOptions) -> Self {
+    pub(super) fn at(stage: &'a Stage, receivers: &[Receiver], options: VerifyOptions) -> Self {
         let truth = |at: &Receiver| Truth::new(stage, at, options.points, options.seed);
         let known: Vec<(Receiver, Truth)> = receivers.par_iter().map(|at| (*at, truth(at))).collect();
         let (bright, dim): (Vec<_>, Vec<_>) = known.into_iter().partition(|(_, truth)| !truth.dim());
@@ -144,7 +144,7 @@ impl<'a> Verifier<'a> {
                 seed: hash(&[self.options.seed, u64::from_le_bytes(*b"2nd look")]),
                 ..self.options
             };
-            Box::new(Self::at(self.stage, self.receivers.clone(), options))
+            Box::new(Self::at(self.stage, &self.receivers, options))
         })
     }
 }
