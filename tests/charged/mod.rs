@@ -20,13 +20,21 @@ fn in_a_process_of_their_own_these_tests_pass() {
     if std::env::var_os(ALONE).is_some() {
         return;
     }
+    // A wrong account is wrong each time; a machine that does other things, and changes its pace meanwhile, is not.
+    let said: Vec<String> = (0..3).map_while(alone).collect();
+    assert!(said.len() < 3, "{}", said.concat());
+}
+
+/// Runs them; what they say, if one fails.
+fn alone(_time: u32) -> Option<String> {
     let output = Command::new(std::env::current_exe().expect("this program"))
         .args(["promises::charged", "--nocapture"])
         .env(ALONE, "1")
         .output()
         .expect("started");
     let said = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success() && said.matches(BEGUN).count() == 5, "{said}");
+    let passed = output.status.success() && said.matches(BEGUN).count() == 5;
+    (!passed).then(|| said.into_owned())
 }
 
 /// What a test says that has the process to itself.
