@@ -1,5 +1,5 @@
 //! Promise: whatever a strategy starts and waits for is charged to it, and by every caller alike.
-use super::{spin, to_itself};
+use super::{FAIR, spin, to_itself};
 use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
@@ -191,7 +191,7 @@ fn a_strategy_of_known_work_is_charged_for_it_by_every_caller() {
         for (part, shares) in ["set-up", "sampling"].iter().zip(shares) {
             let share = median(shares);
             println!("{name} charges {share:.3} of the known work of {part}");
-            assert!((0.9..=1.1).contains(&share), "{name} charges {share:.3} of the known work of {part}");
+            assert!(FAIR.contains(&share), "{name} charges {share:.3} of the known work of {part}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Promise: whatever a unit of work starts and waits for is on its clock, and what it leaves to others is found.
 
-use super::{spin, to_itself};
+use super::{FAIR, spin, to_itself};
 use crate::promises::common::{sixteen, stage};
 use citylights::base::draws::Draws;
 use citylights::base::error::Result;
@@ -63,7 +63,7 @@ fn what_a_unit_starts_and_waits_for_is_on_its_clock() {
     let known = median(&times[0]);
     for ((name, _), times) in ways.iter().zip(&times) {
         let share = median(times) / known;
-        assert!((0.9..=1.1).contains(&share), "{name} is charged {share:.3} of its work");
+        assert!(FAIR.contains(&share), "{name} is charged {share:.3} of its work");
     }
 }
 
