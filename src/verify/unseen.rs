@@ -18,7 +18,7 @@ const FEW: usize = 8;
 /// in which every doubling of the size halves the rate, over four decades.
 const MOST: f64 = 10.0;
 
-/// At most this share of calls may be of events that were not seen, or a sampler of twice the weights might be right.
+/// About this share of calls, and no more, may be of events that were not seen, or a sampler of twice the weights might be right.
 const SHARE: f64 = 0.125;
 
 /// How many calls it takes for that at a level.
@@ -54,7 +54,7 @@ impl Unseen {
     /// Beyond the greatest call x a tail of index a holds x a / (a - 1) for each event.
     pub(super) fn missing(&self, level: f64) -> Missing {
         let Some(greatest) = self.greatest.first() else { return Missing::default() };
-        let share = ((1.0 / level).ln() / self.calls).min(2.0 * SHARE);
+        let share = (1.0 / level).ln() / self.calls;
         Missing { too_high: share * self.sum / self.calls, too_low: share * greatest * self.beyond() }
     }
 
