@@ -4,7 +4,7 @@ use super::folders::{CACHE, RESULTS};
 use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
-use super::scene::SceneOptions;
+use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::seconds;
@@ -25,6 +25,7 @@ use crate::report::table;
 use crate::scene::Scene;
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
+use crate::visibility::visits::Receivers;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -74,6 +75,10 @@ pub(super) struct Arguments {
     /// Runs side by side, each on one thread; 2 by default, or the number of cores where that is less
     #[arg(long, value_parser = threads)]
     threads: Option<u32>,
+    /// Which points the passes visit: what each pixel sees through its centre; spread: in each pass through another point
+    /// of it; bounce: what a ray from there meets next, as in a path tracer. Where they move, each is arrived at once
+    #[arg(long, value_name = "centre|spread|bounce", default_value = "centre", value_parser = receivers)]
+    receivers: Receivers,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
@@ -82,6 +87,10 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     let strategies =
         arguments.strategies.as_deref().map_or_else(|| home.registry.all(), |list| home.registry.parse_list(list))?;
     let peers = peers(&arguments.peers)?;
+    if arguments.receivers.moves() && !peers.is_empty() {
+        let text = "a peer renders what pixels see through their centres: leave out --peer, or take --receivers centre";
+        return Err(Error::Invalid(text.into()).into());
+    }
     // A folder that cannot be used must not cost the reading of scenes.
     arguments.out.as_deref().map_or(Ok(()), |out| ResultFolder::check(out, Kind::Comparison))?;
     let progress = Progress::new()?;
@@ -108,7 +117,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         progress.last_words(&kept(&session.folder));
         for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
             progress.scene(scene.name());
-            let stage = arguments.scene_options.prepare(scene);
+            let stage = arguments.scene_options.prepare(scene, arguments.receivers);
             session.scene(&stage, file, &asked, &progress)?;
         }
         session.finish()?;
@@ -170,7 +179,16 @@ impl Session {
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = ComparisonOptions {
-            typed: &format!("{} verify {}", home.program.name, arguments.scene_options.typed(file)),
+            typed: &format!(
+                "{} verify {}{}",
+                home.program.name,
+                arguments.scene_options.typed(file),
+                if arguments.receivers.moves() {
+                    format!(" --receivers {}", arguments.receivers.name())
+                } else {
+                    String::new()
+                }
+            ),
             strategies,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),
@@ -276,7 +294,7 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
     let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name(), scene_hash(scene))).collect();
     RunRecord {
         plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}",
+            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}; receivers {}",
             scenes.join(" "),
             strategies.join(" "),
             peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
@@ -286,7 +304,8 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
             arguments.reference_work,
             arguments.repeats,
             arguments.seed,
-            arguments.scene_options.describe()
+            arguments.scene_options.describe(),
+            arguments.receivers.name(),
         ),
         schema: SCHEMA,
         command: home.command(),

@@ -4,12 +4,13 @@ use super::folders::CACHE;
 use super::outcome::Outcome;
 use super::output::{check_output, save};
 use super::progress::Progress;
-use super::scene::SceneOptions;
+use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say};
 use super::threads::{pool, threads};
 use super::values::seconds;
 use crate::measure::reference::{Reference, WORK_S, Wanted};
 use crate::measure::target::Target;
+use crate::visibility::visits::Receivers;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -33,6 +34,13 @@ pub(super) struct Arguments {
     /// Threads; all cores by default. The picture does not depend on it
     #[arg(long, value_parser = threads)]
     threads: Option<u32>,
+    /// Which points the passes visit: what each pixel sees through its centre; spread: in each pass through another point
+    /// of it; bounce: what a ray from there meets next, as in a path tracer. Where they move, each is arrived at once
+    #[arg(long, value_name = "centre|spread|bounce", default_value = "centre", value_parser = receivers)]
+    receivers: Receivers,
+    /// Where receivers move: the passes whose receivers' mean it is
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 16))]
+    passes: u32,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
@@ -41,9 +49,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     check_output(&arguments.output)?;
     let progress = Progress::new()?;
     pool(arguments.threads)?.install(|| {
-        let stage = arguments.scene_options.stage(&arguments.scene)?;
+        let stage = arguments.scene_options.stage_visiting(&arguments.scene, arguments.receivers)?;
         progress.scene(stage.scene().name());
-        let target = Target::whole(&stage);
+        let target = Target::whole(&stage).after([arguments.passes]);
         // A picture needs every pixel.
         let fewest = target.places.len();
         let wanted = Wanted { own_rel_mse: arguments.noise, work_s: arguments.reference_work, fewest };

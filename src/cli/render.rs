@@ -3,7 +3,7 @@
 use super::home::Home;
 use super::outcome::Outcome;
 use super::output::{check_output, save};
-use super::scene::SceneOptions;
+use super::scene::{SceneOptions, receivers};
 use super::terminal::print;
 use super::threads::{pool, threads};
 use super::values::pixel;
@@ -11,8 +11,10 @@ use super::waiting::while_long;
 use crate::base::random::RunKey;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
+use crate::scene::receiver::Receiver;
 use crate::strategy::BuildContext;
 use crate::visibility::view::Seen;
+use crate::visibility::visits::Receivers;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -38,6 +40,10 @@ pub(super) struct Arguments {
     /// Threads; all cores by default. The picture does not depend on it
     #[arg(long, value_parser = threads)]
     threads: Option<u32>,
+    /// Which points the passes visit: what each pixel sees through its centre; spread: in each pass through another point
+    /// of it; bounce: what a ray from there meets next, as in a path tracer. Where they move, each is arrived at once
+    #[arg(long, value_name = "centre|spread|bounce", default_value = "centre", value_parser = receivers)]
+    receivers: Receivers,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
@@ -48,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         check_output(output)?;
     }
     pool(arguments.threads)?.install(|| {
-        let stage = arguments.scene_options.stage(&arguments.scene)?;
+        let stage = arguments.scene_options.stage_visiting(&arguments.scene, arguments.receivers)?;
         let name = stage.scene().name();
         let context = BuildContext { stage: &stage, seed: arguments.seed };
         let sampler = while_long(&format!("{name}: {} being built", strategy.name()), || strategy.build(context))?;
@@ -75,17 +81,24 @@ fn one_pixel(plan: &Plan<'_>, x: u32, y: u32, passes: u32) -> anyhow::Result<Out
         return Ok(Outcome::Done);
     };
     let at = plan.receivers[index as usize];
+    let moves = plan.stage.visits().moves();
     // What looks at the whole frame must see it; whatever else gives this pixel the same alone.
-    let (point, place) = (std::slice::from_ref(&at), index as usize);
-    let (receivers, place) = if plan.sampler.source().is_some() { (point, 0) } else { (plan.receivers, place) };
+    let (point, index) = (std::slice::from_ref(&at), index as usize);
+    let (receivers, index) = if plan.sampler.source().is_some() { (point, 0) } else { (plan.receivers, index) };
     let plan = Plan { receivers, ..*plan };
-    print(&format!("pixel {x},{y}: position {} m, normal {}, albedo {}\n", at.position, at.normal, at.albedo))?;
+    let place = |at: &Receiver| format!("position {} m, normal {}, albedo {}", at.position, at.normal, at.albedo);
+    if !moves {
+        print(&format!("pixel {x},{y}: {}\n", place(&at)))?;
+    }
     let mut film = Film::new(receivers.len());
     for pass in 0..passes {
         let mut single = Film::starting_at(receivers.len(), pass);
         plan.run_parallel(1, &mut single);
         plan.run_parallel(1, &mut film);
-        print(&format!("pass {pass}: {} cd/m^2, mean {}\n", single.image()[place], film.image()[place]))?;
+        let there = plan.stage.visited(&at, pass).filter(|_| moves).map(|at| format!(" at {}", place(&at)));
+        let there = if moves { there.unwrap_or_else(|| " meets no surface".into()) } else { String::new() };
+        let (own, mean) = (single.image()[index], film.image()[index]);
+        print(&format!("pass {pass}{there}: {own} cd/m^2, mean {mean}\n"))?;
     }
     Ok(Outcome::Done)
 }

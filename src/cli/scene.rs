@@ -12,6 +12,7 @@ use crate::scene::light_sampling::LightSampling;
 use crate::sources::{self, Overrides};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
+use crate::visibility::visits::Receivers;
 use clap::Args;
 use std::path::Path;
 
@@ -105,20 +106,31 @@ impl SceneOptions {
 
     /// Loads a scene and makes it ready.
     pub(super) fn stage(&self, file: &Path) -> Result<Stage, Error> {
-        Ok(self.prepare(self.load(file)?))
+        self.stage_visiting(file, Receivers::Centre)
     }
 
-    /// Makes a loaded scene ready.
-    pub(super) fn prepare(&self, scene: Scene) -> Stage {
+    /// Loads a scene and makes it ready for passes that visit these receivers.
+    pub(super) fn stage_visiting(&self, file: &Path, receivers: Receivers) -> Result<Stage, Error> {
+        Ok(self.prepare(self.load(file)?, receivers))
+    }
+
+    /// Makes a loaded scene ready for passes that visit these receivers.
+    pub(super) fn prepare(&self, scene: Scene, receivers: Receivers) -> Stage {
         let (lights, surfaces) = (grouped(scene.lights().len() as u64), grouped(scene.surfaces().len() as u64));
         let what = format!("{}: being prepared, {lights} lights and {surfaces} triangles", scene.name());
-        let stage = while_long(&what, || Stage::new(scene, self.leave_out, self.offset));
+        let stage = while_long(&what, || Stage::visiting(scene, self.leave_out, self.offset, receivers));
         let stage = stage.with_light_sampling(self.light_sampling);
         if stage.receivers().is_empty() {
             say(&format!("{}: the camera sees no surface: nothing but sky and emitters", stage.scene().name()));
         }
         stage
     }
+}
+
+/// The receivers that passes visit, by name.
+pub(super) fn receivers(text: &str) -> Result<Receivers, String> {
+    let known = Receivers::NAMED.map(|(name, _)| name);
+    Receivers::named(text).ok_or_else(|| right(text, &known))
 }
 
 fn offset(text: &str) -> Result<Offset, String> {

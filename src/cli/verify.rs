@@ -3,7 +3,7 @@
 use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
-use super::scene::SceneOptions;
+use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say};
 use super::threads::{pool, threads};
 use super::waiting::while_long;
@@ -17,6 +17,7 @@ use crate::sources::small;
 use crate::strategy::Configured;
 use crate::verify::metamorphic::{self, Copies, Metamorphic, PIXELS};
 use crate::verify::{self, BY_CHANCE, Check, Verifier, VerifyOptions};
+use crate::visibility::visits::Receivers;
 use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -38,14 +39,14 @@ pub(super) struct Arguments {
     /// Picks to draw at each receiver, about; a failing check is made again with four times as many
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(100..=100_000_000))]
     draws: u32,
-    /// Receivers of each scene
+    /// Places of each scene that are looked at
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    receivers: u32,
+    places: u32,
     /// The chance that any check fails although all strategies are right
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = level)]
     level: f64,
     /// Look as shortly as `compare` does before it measures, at its whole film, and at the scene alone, unchanged
-    #[arg(long, conflicts_with_all = ["draws", "receivers", "level"])]
+    #[arg(long, conflicts_with_all = ["draws", "places", "level"])]
     gate: bool,
     /// Show this check alone
     #[arg(long, value_name = "CHECK", value_parser = check)]
@@ -56,6 +57,10 @@ pub(super) struct Arguments {
     /// Threads; all cores by default
     #[arg(long, value_parser = threads)]
     threads: Option<u32>,
+    /// Which points are sampled: what each pixel sees through its centre; spread or bounce: what a pass of `compare` visits.
+    /// Scenes that are changed for a check are always looked at through pixel centres
+    #[arg(long, value_name = "centre|spread|bounce", default_value = "centre", value_parser = receivers)]
+    receivers: Receivers,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
@@ -77,7 +82,7 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     } else {
         say(&format!("seed {seed}; level {} for {chances} checks that go by chance", arguments.level));
         VerifyOptions {
-            receivers: arguments.receivers as usize,
+            receivers: arguments.places as usize,
             draws: arguments.draws as usize,
             seed,
             // A check fails only if it fails twice.
@@ -121,7 +126,7 @@ fn verify(
     let (whole, by) = (&arguments.scene_options, arguments.scene_options.light_sampling());
     let parts = scene.parts();
     let camera = if arguments.gate { parts.camera } else { parts.camera.shrunk(PIXELS) };
-    let stage = whole.prepare(Scene::new(Parts { camera, ..parts })?);
+    let stage = whole.prepare(Scene::new(Parts { camera, ..parts })?, arguments.receivers);
     let verifier = Verifier::new(&stage, options);
     let what = format!("{}: being changed in ways that change no strategy's contract", scene.name());
     let copies = while_long(&what, || (!arguments.gate).then(|| Copies::new(scene, whole.offset(), by)).transpose())?;

@@ -59,6 +59,7 @@ pub(crate) fn compare<'a>(
     };
     let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
     let wanted = Wanted { work_s: options.reference_work_s, ..Wanted::new(accuracy(options, &pilots, &ladders)) };
+    let frame = frame.after(ladders.concat());
     let (target, reference) = Reference::bounded(&frame, wanted, options.cache, watch)?;
     if let Some(why) = nothing_lit(&target, &reference.truth) {
         return Ok(unmeasured(target, file, reference, wanted, options, why));
@@ -132,7 +133,7 @@ fn unmeasured<'a>(
 type Trial = Result<Pilot>;
 
 fn pilots(target: &Target<'_>, options: &ComparisonOptions<'_>, watch: &dyn Observer) -> Result<Vec<Option<Trial>>> {
-    let few = target.thinned(plan::RECEIVERS);
+    let few = target.thinned(plan::RECEIVERS).after([plan::PASSES]);
     let rough = Reference::compute(&few, 1e-3, options.cache, watch)?.truth;
     watch.begin("checks and pilots", options.strategies.len() as u64);
     let gate = Gate::new(target.stage, options.typed, options.strategies.len(), options.seed);
@@ -171,7 +172,7 @@ fn hold_to_claims(options: &ComparisonOptions<'_>, summaries: &mut [Summary], tr
     let held = |s: &Summary| s.claim == Claim::Unbiased && s.error.is_none() && s.mean_bias.is_bounded();
     let level = sidak(LEVEL, summaries.iter().filter(|s| held(s)).count());
     for (summary, runs) in summaries.iter_mut().zip(runs).filter(|(summary, _)| held(summary)) {
-        let found = bias(truth, &runs.at(summary.passes), 1.0 - level);
+        let found = bias(truth.after(summary.passes), &runs.at(summary.passes), 1.0 - level);
         summary.simultaneous_bias = found;
         if !found.holds(0.0) {
             let Interval { mean, low, high } = found.times(100.0);

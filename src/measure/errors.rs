@@ -8,13 +8,20 @@ use crate::record::Row;
 use glam::{DVec3, Vec3};
 
 /// The exact radiance of the measured receivers: two independent halves, equal where the sum is free of noise.
+///
+/// Where receivers move it is the mean over those that a number of passes visits, and there is one for each such number:
+/// see [`after`](Self::after). All of them weigh a receiver's errors alike, by the radiance after the most passes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Truth {
     halves: [Vec<Vec3>; 2],
     mean: Vec<Vec3>,
     relative: RelMse,
+    /// What each receiver's errors are weighed by: see [`RelMse::weight`].
+    weights: Vec<DVec3>,
     /// Receivers by luminance of the truth, darkest first.
     by_luminance: Vec<u32>,
+    /// Where receivers move: after each number of passes, ascending, the last of them this one's own.
+    budgets: Vec<(u32, Self)>,
 }
 
 /// The errors of one image, over receivers and channels.
@@ -60,19 +67,58 @@ impl Truth {
             halves[0].iter().zip(&halves[1]).map(|(&a, &b)| if a == b { a } else { (a + b) * 0.5 }).collect();
         let mut by_luminance: Vec<u32> = (0..mean.len() as u32).collect();
         by_luminance.sort_by(|&a, &b| luminance(mean[a as usize]).total_cmp(&luminance(mean[b as usize])));
-        Self { relative: RelMse::about(&mean), halves, mean, by_luminance }
+        let relative = RelMse::about(&mean);
+        let weights = mean.iter().map(|&radiance| relative.weight(radiance)).collect();
+        Self { halves, mean, relative, weights, by_luminance, budgets: Vec::new() }
+    }
+
+    /// Of receivers that move: from two independent halves after each number of passes, ascending.
+    pub(crate) fn of_budgets(halves: Vec<(u32, [Vec<Vec3>; 2])>) -> Self {
+        let budgets: Vec<(u32, Self)> =
+            halves.into_iter().map(|(passes, halves)| (passes, Self::new(halves))).collect();
+        let Some((_, longest)) = budgets.last().cloned() else { return Self::default() };
+        let mut all = Self { budgets, ..longest.clone() };
+        all.weigh(longest.relative, &longest.weights);
+        all
+    }
+
+    /// The truth after so many passes: one of the target's [budgets](super::target::Target::budgets) where receivers move,
+    /// any number where they stay.
+    pub(crate) fn after(&self, passes: u32) -> &Self {
+        if self.budgets.is_empty() {
+            return self;
+        }
+        let known = self.budgets.iter().find(|(budget, _)| *budget == passes);
+        known.map(|(_, truth)| truth).expect("a number of passes that the truth was asked for")
     }
 
     /// The truth at about `count` of its receivers: those of [`Target::thinned`](super::target::Target::thinned).
     pub(crate) fn thinned(&self, count: usize) -> Self {
-        let few = |half: &Vec<Vec3>| places(half.len(), count).map(|i| half[i]).collect();
-        Self::new([few(&self.halves[0]), few(&self.halves[1])])
+        self.at(&places(self.mean.len(), count).collect::<Vec<usize>>())
     }
 
-    /// The truth at some of its receivers, with the epsilon of all of them.
+    /// The truth at some of its receivers, weighed as among all of them.
     pub(crate) fn only(&self, places: &[usize]) -> Self {
+        let weights: Vec<DVec3> = places.iter().map(|&i| self.weights[i]).collect();
+        let mut some = self.at(places);
+        some.weigh(self.relative, &weights);
+        some
+    }
+
+    fn at(&self, places: &[usize]) -> Self {
         let some = |half: &Vec<Vec3>| places.iter().map(|&i| half[i]).collect();
-        Self { relative: self.relative, ..Self::new([some(&self.halves[0]), some(&self.halves[1])]) }
+        let of = |truth: &Self| [some(&truth.halves[0]), some(&truth.halves[1])];
+        if self.budgets.is_empty() {
+            return Self::new(of(self));
+        }
+        Self::of_budgets(self.budgets.iter().map(|(passes, truth)| (*passes, of(truth))).collect())
+    }
+
+    fn weigh(&mut self, relative: RelMse, weights: &[DVec3]) {
+        for truth in self.budgets.iter_mut().map(|(_, truth)| truth) {
+            truth.weigh(relative, weights);
+        }
+        (self.relative, self.weights) = (relative, weights.to_vec());
     }
 
     /// The best estimate, in cd/m^2.
@@ -115,7 +161,7 @@ impl Truth {
 
     /// What the squared error of a receiver is multiplied by, per channel: see [`RelMse::weight`].
     pub(crate) fn weight(&self, i: usize) -> DVec3 {
-        self.relative.weight(self.mean[i])
+        self.weights[i]
     }
 
     /// Mean over receivers and channels.

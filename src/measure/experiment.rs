@@ -147,7 +147,7 @@ impl Experiment<'_> {
             let pixel = self.target.frame[self.target.places[at]].pixel;
             return failed(format!("the radiance at pixel {pixel} is no finite number"));
         }
-        let row = self.truth.errors(&image).written_to(done.row(scene, name, unit.run, unit.passes));
+        let row = self.truth.after(unit.passes).errors(&image).written_to(done.row(scene, name, unit.run, unit.passes));
         (row, self.is_last(unit).then_some(image))
     }
 }

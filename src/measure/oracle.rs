@@ -62,6 +62,12 @@ pub(super) fn settle(
     summaries: &mut [Summary],
     watch: &dyn Observer,
 ) -> Result<()> {
+    if target.stage.visits().moves() {
+        // It would weigh every light with a ray of its own at each of them.
+        let oracles = options.strategies.iter().zip(summaries).filter(|(strategy, _)| is_oracle(strategy));
+        oracles.for_each(|(_, summary)| summary.skipped = Some("skipped: run only where receivers stay".into()));
+        return Ok(());
+    }
     let compared = |s: &Summary| s.chooses && s.runs > 0 && s.error.is_none();
     let mut rungs: Vec<u32> = summaries.iter().filter(|s| compared(s)).map(|s| s.passes).collect();
     rungs.retain(|&passes| passes <= options.budget.usual_passes);

@@ -69,10 +69,11 @@ const SQUARES: usize = 16;
 pub(crate) const DETECTABLE: f64 = 0.05;
 
 /// Passes of a pilot, and passes that work is counted over.
-pub(super) const PASSES: u32 = 4;
+pub(crate) const PASSES: u32 = 4;
 
 impl Pilot {
-    /// Tries a strategy on a few of the target's receivers, with their truth: that of `target.thinned(RECEIVERS)`.
+    /// Tries a strategy on a few of the target's receivers, with their truth: that of `target.thinned(RECEIVERS)`
+    /// after [`PASSES`] passes.
     ///
     /// One that draws state for a pass or looks at its whole frame gets the whole frame: on a few receivers that cost
     /// would be out of proportion, and neighbours too far apart to be any.
@@ -91,6 +92,7 @@ impl Pilot {
     }
 
     fn tried(target: &Target<'_>, truth: &Truth, strategy: &Configured, seed: u64) -> Result<Self> {
+        let truth = truth.after(PASSES);
         let sampler = strategy.build(BuildContext { stage: target.stage, seed })?;
         let frame = &target.frame;
         let places = target.thinned(RECEIVERS).places;

@@ -8,18 +8,19 @@
 
 use super::errors::Truth;
 use super::observer::Observer;
-use super::target::Target;
+use super::target::{Target, Visited};
 use super::tiles::{self, TileFile};
 use crate::base::error::{Error, Result};
+use crate::base::random::hash;
 use crate::base::rel_mse::RelMse;
 use crate::render::exact::Exact;
 use crate::render::refined::{FALL, Price, refined};
 use crate::scene::Scene;
 use crate::scene::light::Kind;
-use crate::scene::receiver::Receiver;
 use crate::verify::halves;
 use crate::visibility::stage::Stage;
 use cpu_time::ThreadTime;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Mutex;
@@ -31,6 +32,8 @@ pub(crate) struct Reference {
     pub truth: Truth,
     /// Whether it is a sum without noise.
     pub exact_sum: bool,
+    /// Receivers of a measured place: 1 where they stay, those of all passes where they move.
+    visits: f64,
     /// Shadow rays cast, those included that said how many are needed.
     pub rays: u64,
     /// Counted work of all that, in nominal CPU seconds: see [`RAY_S`].
@@ -70,8 +73,15 @@ pub(crate) const LIGHT_S: f64 = 20e-9;
 /// Work of a reference where nobody says otherwise, in nominal CPU seconds: a minute of two cores.
 pub(crate) const WORK_S: f64 = 120.0;
 
-/// Receivers that are always measured, where there are so many.
+/// Places that are always measured, where there are so many and receivers stay.
 pub(crate) const FEWEST: usize = 256;
+
+/// Places that are always measured, where there are so many and each has receivers of many passes.
+const FEWEST_MOVING: usize = 64;
+
+fn fewest(target: &Target<'_>) -> usize {
+    if target.stage.visits().moves() { FEWEST_MOVING } else { FEWEST }
+}
 
 /// Part of the hash: to be raised whenever `render::refined` gives other numbers.
 const VERSION: u32 = 3;
@@ -104,7 +114,7 @@ impl Reference {
         watch: &dyn Observer,
     ) -> Result<(Target<'a>, Self)> {
         let every = target.places.len();
-        let few = target.thinned(FEWEST);
+        let few = target.thinned(fewest(target));
         let fewest = wanted.fewest.clamp(few.places.len(), every);
         let mut measured = few.clone();
         let mut step = Step { halvings: 0, relative: RelMse::default() };
@@ -171,7 +181,7 @@ impl Reference {
 
     /// The image at one price of a ray.
     fn level(target: &Target<'_>, step: Step, cache: &Path, watch: &dyn Observer) -> Result<Self> {
-        let (stage, measured) = (target.stage, target.measured());
+        let (stage, measured) = (target.stage, target.visited());
         let n = measured.len();
         let (file, mut tiles) = TileFile::open(cache, &name(stage, &measured, step), n)?;
         let missing: Vec<usize> = (0..tiles.len()).filter(|&tile| tiles[tile].is_none()).collect();
@@ -179,10 +189,11 @@ impl Reference {
         if !missing.is_empty() {
             watch.begin("reference", missing.iter().map(|&tile| tiles::range(tile, n).len() as u64).sum());
             let file = Mutex::new(file);
-            let one = |at: &Receiver| {
+            let one = |Visited { at, pass, .. }: &Visited| {
                 watch.check()?;
                 let clock = ThreadTime::now();
-                let value = refined(stage, at, step.price(), SEED);
+                let seed = pass.map_or(SEED, |pass| hash(&[SEED, u64::from(pass)]));
+                let value = refined(stage, at, step.price(), seed);
                 spent.fetch_add(clock.elapsed().as_nanos() as u64, Ordering::Relaxed);
                 watch.advance(1);
                 Ok(value)
@@ -201,11 +212,11 @@ impl Reference {
         if !check.passed {
             return Err(Error::Invalid(format!("the reference's halves are not independent: {check}")));
         }
-        let half = |i: usize| values.iter().map(|v| (v.sum + v.halves[i]).as_vec3()).collect();
         let rays = values.iter().map(|v| v.rays).sum();
         let lights = stage.scene().lights();
         Ok(Self {
-            truth: Truth::new([half(0), half(1)]),
+            truth: truth(target, &measured, &values),
+            visits: n as f64 / target.places.len().max(1) as f64,
             exact_sum: !lights.iter().any(|light| light.kind() == Kind::Triangle),
             rays,
             work_s: rays as f64 * RAY_S + (n * lights.len()) as f64 * LIGHT_S,
@@ -225,6 +236,23 @@ impl Reference {
             ..self
         }
     }
+}
+
+/// The radiance of each measured place: of its receiver, or the mean over those of the first passes of each budget.
+fn truth(target: &Target<'_>, measured: &[Visited], values: &[Exact]) -> Truth {
+    let half = |i: usize, passes: u32| {
+        let mut sums = vec![DVec3::ZERO; target.places.len()];
+        for (visited, value) in
+            measured.iter().zip(values).filter(|(visited, _)| visited.pass.is_none_or(|p| p < passes))
+        {
+            sums[visited.place] += (value.sum + value.halves[i]) / f64::from(passes);
+        }
+        sums.into_iter().map(DVec3::as_vec3).collect()
+    };
+    if !target.stage.visits().moves() {
+        return Truth::new([half(0, 1), half(1, 1)]);
+    }
+    Truth::of_budgets(target.budgets().iter().map(|&passes| (passes, [half(0, passes), half(1, passes)])).collect())
 }
 
 /// A price of a ray, in powers of two: exact on every machine, and met again by the next comparison of the scene.
@@ -256,8 +284,9 @@ impl Step {
     fn finer(self, missing: f64, own_rel_mse: f64, found: &Reference) -> Self {
         if self.halvings == 0 {
             // At any price the image's relMSE is that times the rays of a receiver, over FALL.
-            let rays = found.rays as f64 / found.truth.mean().len() as f64;
-            let halvings = (rays / (FALL * own_rel_mse.max(EASY))).log2().ceil();
+            // The mean over the receivers of a place has less noise than one of them, by their number.
+            let rays = found.rays as f64 / (found.truth.mean().len() as f64 * found.visits);
+            let halvings = (rays / (FALL * own_rel_mse.max(EASY) * found.visits)).log2().ceil();
             return Self { halvings: (halvings as u32).clamp(1, FINEST), relative: found.truth.relative() };
         }
         let halvings = (missing.log2() * (FALL + 1.0) / FALL).ceil();
@@ -279,13 +308,17 @@ impl Step {
 }
 
 /// The file name of a level: a hash of all that decides it.
-fn name(stage: &Stage, receivers: &[Receiver], step: Step) -> String {
+fn name(stage: &Stage, receivers: &[Visited], step: Step) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(scene_hash(stage.scene()).as_bytes());
     let Price { relative, a_ray } = step.price();
     hasher.update(format!("{VERSION} {:?} {a_ray:e} {}", stage.offset(), relative.epsilon()).as_bytes());
-    receivers.iter().for_each(|at| {
+    hasher.update(if stage.visits().moves() { stage.visits().name().as_bytes() } else { b"" });
+    receivers.iter().for_each(|Visited { at, pass, .. }| {
         hasher.update(&at.pixel.to_le_bytes());
+        pass.iter().for_each(|pass| {
+            hasher.update(&pass.to_le_bytes());
+        });
     });
     hasher.finalize().to_hex().to_string()
 }

@@ -81,6 +81,7 @@ impl Jackknife {
 
 /// A summary with the figures of a strategy's runs, but for what depends on the other rows; and its bias for what does.
 pub(crate) fn summarise(mut summary: Summary, truth: &Truth, runs: &Runs, ladder: &[u32]) -> (Summary, Jackknife) {
+    let truth = ladder.last().map_or(truth, |&passes| truth.after(passes));
     let jackknife = Jackknife::of(truth, runs);
     let Some(last) = ladder.last().map(|&passes| runs.at(passes)).filter(|rows| !rows.is_empty()) else {
         return (summary, jackknife);

@@ -9,3 +9,4 @@ pub(crate) mod kernel;
 pub mod passes;
 pub(crate) mod picture;
 pub(crate) mod refined;
+pub(crate) mod visit;

@@ -2,6 +2,7 @@
 
 use super::film::Film;
 use super::kernel::{Kernel, kernel};
+use super::visit::Visit;
 use crate::base::counts::Counts;
 use crate::base::random::RunKey;
 use crate::scene::light::Kind;
@@ -21,7 +22,8 @@ const CALLS: usize = 512;
 pub struct Plan<'a> {
     /// The scene made ready.
     pub stage: &'a Stage,
-    /// The receivers to sample: all of the stage's, or some.
+    /// The receivers to sample: all of the stage's, or some. Where the stage's receivers
+    /// [move](crate::visibility::visits::Receivers::moves) they stand for their pixels, and the film is of these.
     pub receivers: &'a [Receiver],
     /// Who chooses the lights.
     pub sampler: &'a dyn AnySampler,
@@ -35,51 +37,66 @@ const TILE: usize = 64;
 /// A call aims at no more picks than this: 256 KiB of them, so that they stay in the second-level cache.
 const PICKS: usize = 16_384;
 
-impl Plan<'_> {
+impl<'p> Plan<'p> {
     /// Adds `passes` more passes to `film`, on this thread.
     pub fn run(&self, passes: u32, film: &mut Film) {
-        self.one_thread(false, passes, film);
+        self.visits(passes, film).for_each(|visit| self.run_visit(&visit, film));
     }
 
     /// As [`run`](Self::run), counting.
     pub fn run_counting(&self, passes: u32, film: &mut Film) -> Counts {
-        self.one_thread(true, passes, film)
+        self.visits(passes, film).fold(Counts::default(), |mut counts, visit| {
+            counts += self.one_thread(true, &visit, film);
+            counts
+        })
     }
 
     /// As [`run`](Self::run), on all threads of the current pool: the same bytes.
     pub fn run_parallel(&self, passes: u32, film: &mut Film) {
         let kernel = kernel(self.stage.needs(), false);
-        for passes in self.blocks(passes, film) {
-            let block = self.sampler.begin(self.frame(), passes.clone());
-            self.receivers.par_chunks(TILE).zip(film.sums.par_chunks_mut(TILE)).for_each_init(
-                || Tiles::new(&*block, false),
-                |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &passes, sums),
-            );
+        for visit in self.visits(passes, film) {
+            visit.onto(film, |sums| {
+                for passes in blocks(self.sampler, visit.passes.clone()) {
+                    let block = self.sampler.begin(self.frame(&visit), passes.clone());
+                    visit.receivers.par_chunks(TILE).zip(sums.par_chunks_mut(TILE)).for_each_init(
+                        || Tiles::new(&*block, false),
+                        |tiles, (receivers, sums)| tiles.run(self, kernel, receivers, &passes, sums),
+                    );
+                }
+            });
         }
     }
 
-    fn one_thread(&self, counting: bool, passes: u32, film: &mut Film) -> Counts {
+    /// The next `passes` passes of a film: all of them at once or, where receivers move, one by one. What a visit finds,
+    /// it finds when it is asked for.
+    pub(crate) fn visits<'v>(&'v self, passes: u32, film: &mut Film) -> impl Iterator<Item = Visit<'v>> + use<'v, 'p> {
+        let first = film.next;
+        film.next = first + passes;
+        Visit::all(self.stage, self.receivers, first..film.next)
+    }
+
+    /// Adds the passes of a visit to `film`, on this thread.
+    pub(crate) fn run_visit(&self, visit: &Visit<'_>, film: &mut Film) {
+        self.one_thread(false, visit, film);
+    }
+
+    fn one_thread(&self, counting: bool, visit: &Visit<'_>, film: &mut Film) -> Counts {
         let kernel = kernel(self.stage.needs(), counting);
         let mut counts = Counts::default();
-        for passes in self.blocks(passes, film) {
-            let block = self.sampler.begin(self.frame(), passes.clone());
-            let mut tiles = Tiles::new(&*block, counting);
-            tiles.run(self, kernel, self.receivers, &passes, &mut film.sums);
-            tiles.counts += tiles.worker.work();
-            counts += tiles.counts;
-        }
+        visit.onto(film, |sums| {
+            for passes in blocks(self.sampler, visit.passes.clone()) {
+                let block = self.sampler.begin(self.frame(visit), passes.clone());
+                let mut tiles = Tiles::new(&*block, counting);
+                tiles.run(self, kernel, &visit.receivers, &passes, sums);
+                tiles.counts += tiles.worker.work();
+                counts += tiles.counts;
+            }
+        });
         counts
     }
 
-    fn frame(&self) -> Frame<'_> {
-        Frame::new(self.receivers, self.key)
-    }
-
-    /// The next `passes` passes of a film in blocks that the sampler can begin together.
-    fn blocks(&self, passes: u32, film: &mut Film) -> impl Iterator<Item = Range<u32>> + use<> {
-        let first = film.next;
-        film.next = first + passes;
-        blocks(self.sampler, first..film.next)
+    fn frame<'v>(&self, visit: &'v Visit<'_>) -> Frame<'v> {
+        Frame::new(&visit.receivers, self.key)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::calls::{self, count_different};
 use super::check::Check;
 use super::impossible::{IDS, Impossible, VALID};
+use super::moved::{MOVED, moved};
 use super::observe::{Site, freedom};
 use super::options::VerifyOptions;
 use super::spread::spread;
@@ -15,7 +16,6 @@ use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{Frame, Pick, PickBuffer};
-use glam::DVec3;
 
 /// The checks' names.
 const SEED: &str = "same-seed";
@@ -23,7 +23,7 @@ const THREADS: &str = "threads";
 const REPLAY: &str = "replay";
 const ALLOCATION: &str = "allocation";
 /// The checks that hold exactly.
-pub(super) const NAMES: [&str; 7] = [IDS, VALID, SEED, THREADS, REPLAY, ALLOCATION, RECIPROCAL];
+pub(super) const NAMES: [&str; 8] = [IDS, VALID, SEED, THREADS, REPLAY, MOVED, ALLOCATION, RECIPROCAL];
 pub(super) const PICKS: &str = "picks";
 const RECIPROCAL: &str = "reciprocal";
 
@@ -38,7 +38,7 @@ const FILM_PASSES: u32 = 3;
 
 /// The first passes at each receiver, and at those that [`threads`] renders.
 pub(super) fn impossible(subject: &Subject<'_>) -> Impossible {
-    let (all, rendered) = (subject.stage.receivers(), rendered(subject));
+    let (all, rendered) = (subject.frame, rendered(subject));
     let lights = subject.stage.scene().lights().len();
     let mut found = Impossible::default();
     for (frame, receivers, passes) in [(all, subject.receivers, PASSES), (&rendered, &rendered, FILM_PASSES)] {
@@ -53,7 +53,7 @@ pub(super) fn impossible(subject: &Subject<'_>) -> Impossible {
 
 /// The checks that need no statistics.
 pub(super) fn exact(subject: &Subject<'_>) -> Vec<Check> {
-    let mut checks = vec![same_seed(subject), threads(subject), replay(subject)];
+    let mut checks = vec![same_seed(subject), threads(subject), replay(subject), moved(subject)];
     if let Some(counter) = subject.options.allocations {
         checks.push(allocation(subject, counter));
     }
@@ -62,12 +62,12 @@ pub(super) fn exact(subject: &Subject<'_>) -> Vec<Check> {
 
 /// The receivers that films are made of: more than one tile of 64.
 fn rendered(subject: &Subject<'_>) -> Vec<Receiver> {
-    spread(subject.stage.receivers(), 80)
+    spread(subject.frame, 80)
 }
 
 /// The same picks again from a new worker, from one that comes the other way round, and pass by pass.
 fn same_seed(subject: &Subject<'_>) -> Check {
-    let (frame, receivers) = (subject.stage.receivers(), subject.receivers);
+    let (frame, receivers) = (subject.frame, subject.receivers);
     let first = subject.calls(frame, receivers, 0..PASSES);
     let mut differ = count_different(&first, &subject.calls(frame, receivers, 0..PASSES));
     let backwards: Vec<Receiver> = receivers.iter().rev().copied().collect();
@@ -110,20 +110,26 @@ fn threads(subject: &Subject<'_>) -> Check {
 /// The renderer's film against the same picks shaded one by one, every kind compiled in and every ray cast.
 fn replay(subject: &Subject<'_>) -> Check {
     let (stage, receivers) = (subject.stage, subject.receivers);
-    let mut film = Film::new(receivers.len());
-    Plan { stage, receivers, sampler: subject.sampler, key: subject.key(0) }.run(PASSES, &mut film);
-    // The film's frame is its receivers.
-    let calls = subject.calls(receivers, receivers, 0..PASSES);
+    let plan = Plan { stage, receivers, sampler: subject.sampler, key: subject.key(0) };
+    let (mut film, mut singly) = (Film::new(receivers.len()), Film::new(receivers.len()));
+    plan.run(PASSES, &mut film);
     let lights = stage.scene().lights();
-    let mut rays = 0;
+    for visit in plan.visits(PASSES, &mut singly) {
+        // The film's frame is the receivers of a visit.
+        let calls = subject.calls(&visit.receivers, &visit.receivers, visit.passes.clone());
+        visit.onto(&mut singly, |sums| {
+            for ((at, calls), sum) in visit.receivers.iter().zip(calls.chunks(visit.passes.len())).zip(sums) {
+                for pick in calls.iter().flatten() {
+                    let light = &lights[pick.light as usize];
+                    let radiance = shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut 0);
+                    *sum += radiance * f64::from(pick.weight);
+                }
+            }
+        });
+    }
     let mut worst = 0.0f64;
-    for ((at, calls), shown) in receivers.iter().zip(calls.chunks(PASSES as usize)).zip(film.image()) {
-        let mut sum = DVec3::ZERO;
-        for pick in calls.iter().flatten() {
-            let light = &lights[pick.light as usize];
-            sum += shadowed(stage, stage.light_sampling(), at, light, pick.uv, &mut rays) * f64::from(pick.weight);
-        }
-        let (wanted, found) = (grey(sum / f64::from(PASSES)), grey(shown.as_dvec3()));
+    for (wanted, found) in singly.image().into_iter().zip(film.image()) {
+        let [wanted, found] = [wanted, found].map(|radiance| grey(radiance.as_dvec3()));
         worst = worst.max((found - wanted).abs() / wanted.max(f64::MIN_POSITIVE));
     }
     Check::new(REPLAY, worst, 1e-6, "greatest relative difference of the film from its picks shaded singly".into())
@@ -133,7 +139,7 @@ fn replay(subject: &Subject<'_>) -> Check {
 fn allocation(subject: &Subject<'_>, counter: fn() -> u64) -> Check {
     let passes = 0..PASSES.min(subject.sampler.most_passes());
     let receivers = subject.receivers;
-    let block = subject.sampler.begin(Frame::new(subject.stage.receivers(), subject.key(0)), passes.clone());
+    let block = subject.sampler.begin(Frame::new(subject.frame, subject.key(0)), passes.clone());
     let found = allocations(counter, || {
         let (mut worker, mut buffer, passes) = (block.worker(false), PickBuffer::default(), passes.clone());
         move || worker.fill(receivers, passes.clone(), true, &mut buffer)

@@ -28,7 +28,7 @@
 //! | what does each light really add? | `Truth` |
 //! | what is checked, and what does it pick? | `subject`, `calls` |
 //! | which picks does no right sampler make? | `impossible` |
-//! | does it keep what holds exactly? | `contract`, `seeds`, `arrival` |
+//! | does it keep what holds exactly? | `contract`, `moved`, `seeds`, `arrival` |
 //! | what does it do in many draws, and what may these not have shown? | `observe`, `pool`, `steady`, `unseen` |
 //! | is that right on average? | `coverage`, `weights`, `estimate` |
 //! | and in a scene that was changed in ways whose effect is known? | `metamorphic` |
@@ -47,6 +47,7 @@ mod halves;
 mod impossible;
 pub(crate) mod independent;
 pub(crate) mod metamorphic;
+mod moved;
 mod names;
 mod observe;
 mod options;

@@ -242,7 +242,7 @@ impl Site<'_> {
 /// Draws at every receiver of the subject.
 pub(super) fn seen<'a>(subject: &Subject<'a>) -> Seen<'a> {
     let options = subject.options;
-    let (frame, receivers) = (subject.stage.receivers(), subject.receivers);
+    let (frame, receivers) = (subject.frame, subject.receivers);
     let first = subject.calls(frame, receivers, 0..FIRST);
     let picks = |calls: &[Vec<_>]| calls.iter().map(Vec::len).sum::<usize>() as f64 / f64::from(FIRST);
     let per_call: Vec<f64> = first.chunks(FIRST as usize).map(|calls| picks(calls).max(1.0)).collect();
@@ -299,7 +299,7 @@ pub(super) fn seen<'a>(subject: &Subject<'a>) -> Seen<'a> {
 /// One independent run: `calls` passes at each receiver, a buffer of picks at a time. Shows `take` the receiver, the
 /// first pass and the picks.
 fn run(subject: &Subject<'_>, run: u32, calls: &[u32], mut take: impl FnMut(usize, u32, &PickBuffer)) {
-    let frame = Frame::new(subject.stage.receivers(), subject.key(run));
+    let frame = Frame::new(subject.frame, subject.key(run));
     let mut buffer = PickBuffer::default();
     for block in blocks(subject.sampler, 0..calls.iter().copied().max().unwrap_or(0)) {
         let begun = subject.sampler.begin(frame, block.clone());

@@ -13,6 +13,8 @@ use std::ops::Range;
 pub(super) struct Subject<'v> {
     pub(super) stage: &'v Stage,
     pub(super) options: &'v VerifyOptions,
+    /// All that is sampled.
+    pub(super) frame: &'v [Receiver],
     /// Where it is looked at, and what each light adds there.
     pub(super) receivers: &'v [Receiver],
     pub(super) truths: &'v [Truth],

@@ -10,11 +10,22 @@ use super::truth::Truth;
 use super::{arrival, contract, coverage, estimate, observe, seeds, weights};
 use crate::base::error::Result;
 use crate::base::random::hash;
+use crate::render::visit::Visit;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{AnySampler, BuildContext, Claim, Configured};
 use crate::visibility::stage::Stage;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::OnceLock;
+
+/// What is sampled on a stage: that of the first pass stands for all, where receivers move.
+fn frame(stage: &Stage) -> Cow<'_, [Receiver]> {
+    if stage.visits().moves() {
+        Visit::moving(stage, stage.receivers(), 0).receivers.into_owned().into()
+    } else {
+        stage.receivers().into()
+    }
+}
 
 /// How many times as much the second look draws.
 const MORE: usize = 4;
@@ -23,6 +34,8 @@ const MORE: usize = 4;
 pub struct Verifier<'a> {
     pub(super) stage: &'a Stage,
     pub(super) options: VerifyOptions,
+    /// All that is sampled: what pixels see through their centres or, where receivers move, what a pass visits.
+    frame: Cow<'a, [Receiver]>,
     pub(super) receivers: Vec<Receiver>,
     pub(super) truths: Vec<Truth>,
     /// How many of them, the first, get more light than rounding may make.
@@ -34,7 +47,8 @@ pub struct Verifier<'a> {
 impl<'a> Verifier<'a> {
     /// Finds the truth at `options.receivers` receivers of a stage.
     pub fn new(stage: &'a Stage, options: VerifyOptions) -> Self {
-        Self::at(stage, &spread(stage.receivers(), options.receivers), options)
+        let receivers = spread(&frame(stage), options.receivers);
+        Self::at(stage, &receivers, options)
     }
 
     /// Finds the truth at receivers of a stage.
@@ -44,7 +58,7 @@ impl<'a> Verifier<'a> {
         let (bright, dim): (Vec<_>, Vec<_>) = known.into_iter().partition(|(_, truth)| !truth.dim());
         let first = bright.len();
         let (receivers, truths) = bright.into_iter().chain(dim).unzip();
-        Self { stage, options, receivers, truths, bright: first, second: OnceLock::new() }
+        Self { stage, options, frame: frame(stage), receivers, truths, bright: first, second: OnceLock::new() }
     }
 
     /// The receivers that statistics can look at, and what is true there.
@@ -72,7 +86,7 @@ impl<'a> Verifier<'a> {
         let sampler = build()?;
         let mut checks = self.verify_sampler(&*sampler, &strategy.info().claim);
         if checks.iter().all(|check| check.passed || !POSSIBLE.contains(&check.name)) {
-            checks.push(arrival::order(self.stage.receivers(), &self.receivers, self.options.seed, build)?);
+            checks.push(arrival::order(&self.frame, &self.receivers, self.options.seed, build)?);
         }
         Ok(checks)
     }
@@ -125,8 +139,8 @@ impl<'a> Verifier<'a> {
 
     /// A sampler, to be checked against what is true here.
     pub(super) fn subject<'v>(&'v self, sampler: &'v dyn AnySampler) -> Subject<'v> {
-        let Self { stage, options, receivers, truths, .. } = self;
-        Subject { stage, options, receivers, truths, sampler }
+        let Self { stage, options, frame, receivers, truths, .. } = self;
+        Subject { stage, options, frame, receivers, truths, sampler }
     }
 
     /// The same where statistics can look.

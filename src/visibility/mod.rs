@@ -10,3 +10,4 @@ pub(crate) mod russian_roulette;
 pub mod stage;
 mod triangle;
 pub mod view;
+pub mod visits;

@@ -117,12 +117,9 @@ impl RayEnds {
     /// those from the receiver, which differ from those from the origin by the push at most.
     #[inline]
     pub fn segment(&self, at: &Receiver, light: &Light, direction: Vec3, distance: f32) -> Segment {
-        let Offset { push_relative, ulps, t_min, far_relative, horizons, .. } = self.policy;
+        let Offset { t_min, far_relative, horizons, .. } = self.policy;
         let size = at.position.abs().max_element();
-        let mut origin = at.position + at.normal * (self.push + push_relative * size);
-        if ulps > 0.0 {
-            origin = stepped(origin, at.normal * ulps);
-        }
+        let origin = self.start(at);
         let near = if horizons { at.normal } else { Vec3::ZERO };
         if distance == f32::INFINITY {
             // Infinity less a share of infinity is no number, and nothing is nearer than that.
@@ -134,6 +131,15 @@ impl RayEnds {
         let shares = 1.0 / distance;
         let short = self.far + far_relative * (size + distance);
         Segment { origin, along, t_min: t_min * shares, t_max: 1.0 - short * shares, near, far, short }
+    }
+
+    /// Where a ray from a receiver starts.
+    #[inline]
+    pub(super) fn start(&self, at: &Receiver) -> Vec3 {
+        let Offset { push_relative, ulps, .. } = self.policy;
+        let size = at.position.abs().max_element();
+        let origin = at.position + at.normal * (self.push + push_relative * size);
+        if ulps > 0.0 { stepped(origin, at.normal * ulps) } else { origin }
     }
 }
 

@@ -4,6 +4,7 @@ use super::occluders::Occluders;
 use super::offset::{Offset, RayEnds};
 use super::reach;
 use super::view::View;
+use super::visits::{Receivers, visited};
 use crate::scene::Scene;
 use crate::scene::light::LightId;
 use crate::scene::light_sampling::LightSampling;
@@ -17,10 +18,13 @@ pub struct Stage {
     scene: Arc<Scene>,
     occluders: Arc<Occluders>,
     view: View,
+    visits: Receivers,
     needs: Needs,
     lights: Vec<LightId>,
     offset: Offset,
     ray_ends: RayEnds,
+    /// Where bounces start: receivers do not depend on how shadow rays are tried to keep off them.
+    bounce_starts: RayEnds,
     light_sampling: LightSampling,
     shared: Vec<Shared>,
 }
@@ -45,28 +49,36 @@ pub enum LeaveOut {
 }
 
 impl Stage {
-    /// Prepares a scene.
+    /// Prepares a scene whose receivers are what pixels see through their centres.
     pub fn new(scene: Scene, leave_out: LeaveOut, offset: Offset) -> Self {
+        Self::visiting(scene, leave_out, offset, Receivers::Centre)
+    }
+
+    /// Prepares a scene whose passes visit these receivers.
+    ///
+    /// Where receivers move, no light is left out for facing away from all of them: nobody knows them yet.
+    pub fn visiting(scene: Scene, leave_out: LeaveOut, offset: Offset, receivers: Receivers) -> Self {
         let mut shared = Vec::new();
         let occluders = timed(&mut shared, "occluders", || Occluders::new(&scene));
         let view = timed(&mut shared, "view", || View::new(&scene, &occluders));
+        let all = || (0..scene.lights().len() as LightId).collect();
         let (needs, lights) = match leave_out {
             LeaveOut::Yes => {
                 let needs = Needs::of(&scene);
                 // The historical policies fail far from the origin: a surface then blocks its own rays, and shows it.
                 let occlusion = needs.occlusion || offset != Offset::SCALED;
-                (
-                    Needs { occlusion, ..needs },
-                    timed(&mut shared, "leave-out", || reach::reaching(&scene, view.receivers())),
-                )
+                let reaching = || if receivers.moves() { all() } else { reach::reaching(&scene, view.receivers()) };
+                (Needs { occlusion, ..needs }, timed(&mut shared, "leave-out", reaching))
             }
-            LeaveOut::No => (Needs::ALL, (0..scene.lights().len() as LightId).collect()),
+            LeaveOut::No => (Needs::ALL, all()),
         };
         Self {
             ray_ends: offset.in_scene(&scene),
+            bounce_starts: Offset::SCALED.in_scene(&scene),
             scene: Arc::new(scene),
             occluders: Arc::new(occluders),
             view,
+            visits: receivers,
             needs,
             lights,
             offset,
@@ -90,9 +102,23 @@ impl Stage {
         &self.view
     }
 
-    /// The visible points.
+    /// What pixels see through their centres: the receivers of every pass or, where these [move](Receivers::moves), a hint
+    /// of where they may lie.
     pub fn receivers(&self) -> &[Receiver] {
         self.view.receivers()
+    }
+
+    /// Which points the passes visit.
+    pub fn visits(&self) -> Receivers {
+        self.visits
+    }
+
+    /// The receiver that a pixel visits in a pass, given what it sees through its centre; none where it meets no surface.
+    pub(crate) fn visited(&self, centre: &Receiver, pass: u32) -> Option<Receiver> {
+        if !self.visits.moves() {
+            return Some(*centre);
+        }
+        visited(self.visits, &self.scene, &self.occluders, self.bounce_starts, centre.pixel, pass)
     }
 
     /// What the scene needs of a renderer.

@@ -46,7 +46,11 @@ impl View {
                 let rows = y0..(y0 + SQUARE).min(height);
                 rows.flat_map(move |y| (x0..(x0 + SQUARE).min(width)).map(move |x| (x, y)))
             })
-            .map(|(x, y)| (y * width + x, look(scene, occluders, x, y)))
+            .map(|(x, y)| {
+                let (eye, direction, pixel) =
+                    (scene.camera().position(), scene.camera().direction(x, y), y * width + x);
+                (pixel, look(scene, occluders, eye, direction, pixel))
+            })
             .collect();
         let mut receivers = Vec::new();
         let mut pixels = vec![Seen::Sky; found.len()];
@@ -98,8 +102,11 @@ impl View {
     }
 }
 
-enum Found {
+/// What a ray meets.
+pub(super) enum Found {
+    /// No surface.
     Other(Seen),
+    /// A surface, and the point of it.
     Surface(Receiver),
 }
 
@@ -120,8 +127,8 @@ fn facing(lights: &[Light], id: LightId, direction: DVec3) -> Option<LightId> {
     beside.find(|&id| lights.get(id as usize).is_some_and(|light| turned(light) && front(light)))
 }
 
-fn look(scene: &Scene, occluders: &Occluders, x: u32, y: u32) -> Found {
-    let (eye, direction) = (scene.camera().position(), scene.camera().direction(x, y));
+/// What a ray of a pixel from `eye` meets, seen from there.
+pub(super) fn look(scene: &Scene, occluders: &Occluders, eye: Vec3, direction: DVec3, pixel: u32) -> Found {
     let Some((met, t)) = occluders.first(eye, direction) else { return Found::Other(Seen::Sky) };
     let index = match met {
         Met::Surface(index) => index,
@@ -138,7 +145,7 @@ fn look(scene: &Scene, occluders: &Occluders, x: u32, y: u32) -> Found {
         normal: normal.as_vec3(),
         view: -direction.as_vec3(),
         albedo: scene.materials()[surface.material as usize].albedo,
-        pixel: y * scene.camera().resolution().0 + x,
+        pixel,
         surface: index,
     })
 }

@@ -266,7 +266,7 @@ fn verify_shows_one_check_as_the_gate_makes_it() {
 #[test]
 fn verify_without_a_scene_looks_at_the_generated_ones() {
     let mut command = citylights();
-    command.args(["verify", "-q", "-s", "uniform,influence-tail", "--draws", "1000", "--receivers", "4"]);
+    command.args(["verify", "-q", "-s", "uniform,influence-tail", "--draws", "1000", "--places", "4"]);
     command.assert().success().stdout(contains("no-lights").and(contains("sixteen")).and(contains("giant")));
     refused("verify --level 2", &["between 0 and 1"]);
     refused("verify --seed 3 --fresh-seed", &["--fresh-seed"]);

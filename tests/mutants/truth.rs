@@ -39,6 +39,8 @@ enum Fault {
     Short,
     /// Spots that are 1 % too bright.
     Bright,
+    /// Passes that visit what a pixel eight columns beside sees, or what a bounce from there meets.
+    Beside,
 }
 
 /// The program's path with one thing wrong.
@@ -64,6 +66,11 @@ impl<'a> Mutant<'a> {
 impl Path for Mutant<'_> {
     fn receivers(&self) -> &[Receiver] {
         &self.receivers
+    }
+
+    fn visited(&self, centre: &Receiver, pass: u32) -> Option<Receiver> {
+        let pixel = if self.fault == Fault::Beside { centre.pixel + 8 } else { centre.pixel };
+        Some(Receiver { pixel, ..self.own.visited(centre, pass)? })
     }
 
     fn unshadowed(&self, by: LightSampling, light: LightId, [u, v]: [f32; 2], at: &Receiver) -> DVec3 {

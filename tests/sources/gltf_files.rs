@@ -73,7 +73,7 @@ fn every_verb_takes_a_gltf_file() {
     run("reference", &["--noise", "0.1", "-o", "a.exr"]);
     run("compare", &["--strategies", "power,all", "--repeats", "2", "--budget", "2", "--out", "out"])
         .stdout(contains("power"));
-    run("verify", &["--strategies", "power", "--draws", "2000", "--receivers", "4", "--quiet"]);
+    run("verify", &["--strategies", "power", "--draws", "2000", "--places", "4", "--quiet"]);
     let mut command = citylights();
     command.current_dir(folder.path()).args(["study", "strategies", "--scene"]).arg(&path).args([
         "--strategies",

@@ -76,6 +76,24 @@ impl<'a> Geometry<'a> {
         Some(Place { position, met, normal, albedo, surface })
     }
 
+    /// The plane of a receiver's surface: its unit normal, and how far from it the receiver lies.
+    pub(super) fn plane(&self, at: &Receiver) -> Option<(DVec3, f64)> {
+        let surface = self.scene.surfaces().get(at.surface as usize)?;
+        let [p, q, r] = surface.corners.map(Vec3::as_dvec3);
+        let normal = (q - p).cross(r - p).normalize();
+        Some((normal, normal.dot(at.position.as_dvec3() - p)))
+    }
+
+    /// Where a direction from the camera meets the film, in pixels from its upper left corner; none behind the camera.
+    pub(super) fn on_film(&self, direction: DVec3) -> Option<[f64; 2]> {
+        let camera = self.scene.camera();
+        let (width, height) = camera.resolution();
+        let pixels = 0.5 * f64::from(height) / (0.5 * camera.fov().to_radians()).tan();
+        let ahead = camera.forward().dot(direction);
+        let [x, y] = [camera.right(), -camera.up()].map(|axis| axis.dot(direction) / ahead * pixels);
+        (ahead > 0.0).then_some([x + 0.5 * f64::from(width), y + 0.5 * f64::from(height)])
+    }
+
     pub(super) fn eye(&self) -> DVec3 {
         self.scene.camera().position().as_dvec3()
     }

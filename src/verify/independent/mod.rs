@@ -9,6 +9,7 @@
 //! | check | question | where |
 //! |---|---|---|
 //! | `receivers` | does each pixel see that point, with that normal and albedo? | `receivers` |
+//! | `visits` | where receivers move: does a pass visit what its pixel sees, or what a bounce from there meets? | `visits` |
 //! | `contribution` | does a point of a light add as much, with nothing in between? | `pairs` |
 //! | `visibility` | does it arrive? | `pairs` |
 //! | `triangle-mean` | do points drawn by angle add up to the triangle's closed form? | `means` |
@@ -29,6 +30,7 @@ mod pairs;
 mod path;
 mod receivers;
 mod sums;
+mod visits;
 
 pub(super) use checks::NAMES;
 pub(crate) use checks::independent;

@@ -18,6 +18,10 @@ impl Path for Own<'_> {
         self.0.receivers()
     }
 
+    fn visited(&self, centre: &Receiver, pass: u32) -> Option<Receiver> {
+        self.0.visited(centre, pass)
+    }
+
     fn unshadowed(&self, by: LightSampling, light: LightId, uv: [f32; 2], at: &Receiver) -> DVec3 {
         let light = &self.0.scene().lights()[light as usize];
         contribution::<0b1111>(by, light, uv, at).map_or(DVec3::ZERO, |arrival| arrival.radiance.as_dvec3())

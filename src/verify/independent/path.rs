@@ -9,6 +9,8 @@ use glam::DVec3;
 pub(crate) trait Path: Sync {
     /// What the camera sees.
     fn receivers(&self) -> &[Receiver];
+    /// What a pass visits of a pixel that sees `centre` through its centre.
+    fn visited(&self, centre: &Receiver, pass: u32) -> Option<Receiver>;
     /// What the point `uv` of a light, drawn `by` a way, adds at a receiver with nothing in between, in cd/m^2.
     fn unshadowed(&self, by: LightSampling, light: LightId, uv: [f32; 2], at: &Receiver) -> DVec3;
     /// Whether light from the point `uv`, by area, arrives; asked only where something could.
