@@ -6,6 +6,7 @@
 
 pub(crate) mod clock;
 pub(crate) mod compare;
+mod counted;
 pub(crate) mod curve;
 pub(crate) mod engine;
 pub(crate) mod errors;
@@ -24,4 +25,6 @@ mod spread;
 pub(crate) mod summary;
 pub(crate) mod target;
 pub(crate) mod tiles;
+pub(crate) mod tune;
+pub(crate) mod tuned;
 pub(crate) mod work;

@@ -18,6 +18,7 @@
 //! | may a run go on with what an earlier one left? | `origin` |
 //! | which version of which files is it? | `SCHEMA`, `files` |
 //! | can a record that was read be what it says? | `check` |
+//! | which parameters were found best, and for what? | `tuned` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
 mod check;
@@ -36,6 +37,7 @@ pub(crate) mod store;
 pub(crate) mod study;
 pub(crate) mod study_store;
 pub(crate) mod summary;
+pub(crate) mod tuned;
 
 pub use crate::base::counts::Counts;
 pub(crate) use folder::{Kind, ResultFolder};
