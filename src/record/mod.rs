@@ -37,6 +37,7 @@ pub(crate) mod store;
 pub(crate) mod study;
 pub(crate) mod study_store;
 pub(crate) mod summary;
+#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
 pub(crate) mod tuned;
 
 pub use crate::base::counts::Counts;

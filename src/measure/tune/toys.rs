@@ -7,9 +7,9 @@ use crate::scene::light::LightId;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally};
 
-/// Nodes of 10 ns that a call visits: with the 5 ns of the call itself, as much as four picks of 60 ns.
+/// Nodes that a call visits, of 10 ns, and one light weighed, of 5: with the 5 of the call itself as much as four picks of
+/// 60 ns.
 const NODES: u64 = 23;
-const EXTRA_WEIGHED: u64 = 1;
 
 /// Picks the only light `picks` times, with weights off by a sign that a call shares, and one that each pick has.
 ///
@@ -65,7 +65,7 @@ impl LightSampler for Sampler {
 
     fn sample<T: Tally>(&self, _at: &Receiver, draws: &mut Draws, _scratch: &mut (), out: &mut Picks<'_, T>) {
         out.tally.nodes(NODES + self.heavy);
-        out.tally.weighed(EXTRA_WEIGHED);
+        out.tally.weighed(1);
         let shared = 1.0 + SHARED.sqrt() * sign(draws.stream());
         for _ in 0..self.picks {
             let own = 1.0 + (4.0 * SHARED / (1.0 + SHARED)).sqrt() * sign(draws.stream());
@@ -89,7 +89,12 @@ pub(super) struct Same {
 }
 
 impl Strategy for Same {
-    const INFO: Info = Info { name: "same", ..Toy::INFO };
+    const INFO: Info = Info {
+        name: "same",
+        summary: "picks the only light with another random weight",
+        source: "a test",
+        claim: Claim::Unbiased,
+    };
     const GRID: &'static str = "tag={0..11}";
     type Sampler = Tagged;
 
