@@ -6,6 +6,7 @@
 
 pub(crate) mod clock;
 pub(crate) mod compare;
+mod counted;
 pub(crate) mod curve;
 pub(crate) mod engine;
 pub(crate) mod errors;
@@ -24,4 +25,8 @@ mod spread;
 pub(crate) mod summary;
 pub(crate) mod target;
 pub(crate) mod tiles;
+#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
+pub(crate) mod tune;
+#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
+pub(crate) mod tuned;
 pub(crate) mod work;

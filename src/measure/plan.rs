@@ -5,10 +5,10 @@
 //! machine is: the same seed gives the same budgets everywhere. The pilot also guesses the error, which says how good
 //! the reference must be.
 
+use super::counted::Work;
 use super::engine::{Account, Meter};
 use super::errors::Truth;
-use super::target::{self, Target};
-use super::work::nominal_s;
+use super::target::Target;
 use crate::base::colour::luminance;
 use crate::base::counts::Counts;
 use crate::base::draws::Points;
@@ -61,9 +61,6 @@ pub(crate) struct Pilot {
 
 /// Receivers of a pilot's errors.
 pub(crate) const RECEIVERS: usize = 512;
-
-/// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
-const SQUARES: usize = 16;
 
 /// A bias of the image's mean that runs should be able to see.
 pub(crate) const DETECTABLE: f64 = 0.05;
@@ -124,18 +121,8 @@ impl Pilot {
         // Receivers are independent of one another: their mean has an n-th of their variance.
         let measured = target.places.len().max(1) as f64;
         let energy_variance = if energy > 0.0 { of_pixel / (measured * energy * energy) } else { 0.0 };
-        let counted = if whole { frame.to_vec() } else { target::squares(frame, SQUARES) };
-        let count = |passes| plan(&counted, 3).run_counting(passes, &mut Film::new(counted.len()));
-        let scale = frame.len() as f64 / counted.len().max(1) as f64;
-        let counts = count(PASSES);
-        // State of one pass is drawn anew for each, and so is every arrival.
-        let (arrive_s, pass_s) = if whole {
-            (0.0, nominal_s(&counts) * scale / f64::from(PASSES))
-        } else {
-            let one = nominal_s(&count(1)) * scale;
-            let pass_s = ((nominal_s(&counts) * scale - one) / f64::from(PASSES - 1)).max(0.0);
-            ((one - pass_s).max(0.0), pass_s)
-        };
+        let key = RunKey { seed: !seed, run: 3 };
+        let Work { arrive_s, pass_s, counts, .. } = Work::at_squares(target, sampler.as_ref(), key, PASSES);
         Ok(Self {
             arrive_s,
             pass_s,

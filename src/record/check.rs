@@ -115,11 +115,11 @@ fn of_table(place: &str, table: &TableRecord) -> Result<(), Fault> {
     Ok(())
 }
 
-fn wrong(place: &str, field: &str, why: String) -> Fault {
+pub(super) fn wrong(place: &str, field: &str, why: String) -> Fault {
     (format!("{place}.{field}"), why)
 }
 
-fn count<T: Copy + PartialOrd + Display>(field: &str, value: T, [least, most]: [T; 2]) -> Result<(), Fault> {
+pub(super) fn count<T: Copy + PartialOrd + Display>(field: &str, value: T, [least, most]: [T; 2]) -> Result<(), Fault> {
     if (least..=most).contains(&value) {
         return Ok(());
     }

@@ -18,6 +18,7 @@
 //! | may a run go on with what an earlier one left? | `origin` |
 //! | which version of which files is it? | `SCHEMA`, `files` |
 //! | can a record that was read be what it says? | `check` |
+//! | which parameters were found best, and for what? | `tuned` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
 mod check;
@@ -36,6 +37,8 @@ pub(crate) mod store;
 pub(crate) mod study;
 pub(crate) mod study_store;
 pub(crate) mod summary;
+#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
+pub(crate) mod tuned;
 
 pub use crate::base::counts::Counts;
 pub(crate) use folder::{Kind, ResultFolder};

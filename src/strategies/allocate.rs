@@ -36,6 +36,7 @@ impl Strategy for Allocate {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
+    const GRID: &'static str = "rays={2,4,8,16,32,64}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let rays = "points on triangles a receiver and pass, on average over the image";

@@ -24,6 +24,7 @@ impl Strategy for Influence {
         claim: Claim::biased("lights out of range are dropped"),
     };
     type Sampler = Sampler;
+    const GRID: &'static str = "cutoff={0.03125,0.125,0.5,2}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         Ok(Self { range: Range::configure(arguments)? })

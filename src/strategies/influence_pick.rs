@@ -21,6 +21,7 @@ impl Strategy for InfluencePick {
         claim: Claim::biased("lights out of range are dropped"),
     };
     type Sampler = InRange;
+    const GRID: &'static str = "picks={1,2,4,8},cutoff={0.03125,0.125,0.5}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let picks = arguments.count("picks", 1, 1..=1024, "lights drawn a pass")?;

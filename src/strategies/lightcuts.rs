@@ -39,6 +39,7 @@ impl Strategy for Lightcuts {
         claim: Claim::biased("one fixed light stands for each cluster"),
     };
     type Sampler = Sampler;
+    const GRID: &'static str = "cut={64,256,1000},error={0.02,0.1,0.5}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let error = "a cluster's bound over the total, at most; 0 for none";

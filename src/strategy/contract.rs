@@ -62,6 +62,10 @@ pub trait Strategy: Sized + Send + Sync + 'static {
     const INFO: Info;
     /// What it becomes for a scene.
     type Sampler: AnySampler + 'static;
+    /// The parameters that matter, each with the values worth a try, in the syntax of sweeps: `"picks={1,2,4},cut={64,256}"`
+    /// stands for six points. Tuning looks among these for the best, the defaults always among them; empty where there is
+    /// nothing to choose. A dozen points at most: each costs what a row costs. See [`Registry::grid`](super::Registry::grid).
+    const GRID: &'static str = "";
     /// Reads the parameters; each has a default.
     ///
     /// # Errors

@@ -21,6 +21,7 @@
 //! | and with state of a pass, or a view of the frame? | [`FrameSampler`] |
 //! | how is a sampler of any type called? | [`AnySampler`], [`Source`] |
 //! | which strategy does a name stand for? | [`Registry`], [`Configured`] |
+//! | at which parameters may it be tried? | `grid` |
 //! | what does choosing cost? | [`Tally`] |
 
 mod any_sampler;
@@ -30,6 +31,7 @@ mod configured;
 mod context;
 mod contract;
 mod frame;
+mod grid;
 mod info;
 mod parameter;
 mod pick;

@@ -8,11 +8,13 @@ use super::sweep;
 use crate::base::claim::Claim;
 use crate::base::draws::Points;
 use crate::base::error::{Error, Result};
+use std::borrow::Borrow;
 
 /// A strategy that can be named.
 #[derive(Clone)]
 struct Entry {
     info: Info,
+    grid: &'static str,
     make: fn(&mut Arguments<'_>) -> Result<Box<dyn AnyStrategy>>,
 }
 
@@ -34,7 +36,7 @@ impl Registry {
     /// With one more, listed last; in place of one of the same name, if there is one.
     #[must_use]
     pub fn with<S: Strategy>(mut self) -> Self {
-        let entry = Entry { info: S::INFO, make: |arguments| Ok(Box::new(S::configure(arguments)?)) };
+        let entry = Entry { info: S::INFO, grid: S::GRID, make: |arguments| Ok(Box::new(S::configure(arguments)?)) };
         match self.entries.iter_mut().find(|known| known.info.name == entry.info.name) {
             Some(known) => *known = entry,
             None => self.entries.push(entry),
@@ -66,32 +68,19 @@ impl Registry {
     /// # Errors
     /// As [`parse`](Self::parse); an empty list; the same strategy twice; braces that are no sweep.
     pub fn parse_list(&self, text: &str) -> Result<Vec<Configured>> {
-        let mut strategies: Vec<String> = Vec::new();
-        for part in sweep::parts(text) {
-            let continues = part.contains('=') && !part.split('=').next().is_some_and(|key| key.contains(':'));
-            match strategies.last_mut() {
-                Some(last) if continues => {
-                    last.push(if last.contains(':') { ',' } else { ':' });
-                    last.push_str(&part);
-                }
-                _ => strategies.push(part),
-            }
-        }
-        if strategies.is_empty() {
-            return Err(Error::Invalid("no strategy is named".into()));
-        }
         let mut parsed: Vec<Configured> = Vec::new();
-        for text in strategies {
+        for text in texts(text)? {
             for swept in sweep::expand(&text)? {
                 parsed.push(self.read(&swept.text, &swept.varied, points)?);
             }
         }
-        for (i, strategy) in parsed.iter().enumerate() {
-            if parsed[..i].iter().any(|before| before.plain_name() == strategy.plain_name()) {
-                return Err(Error::Invalid(format!("strategy `{}` is named twice", strategy.plain_name())));
-            }
-        }
+        each_once(&parsed)?;
         Ok(parsed)
+    }
+
+    /// The grid that a strategy declares, as [`Strategy::GRID`]; none of one that is not known.
+    pub(super) fn declared(&self, name: &str) -> Option<&'static str> {
+        self.entries.iter().find(|entry| entry.info.name == name).map(|entry| entry.grid)
     }
 
     /// Every strategy with its parameters at their defaults.
@@ -130,6 +119,40 @@ impl Registry {
         let points = points(&entry.info, &mut arguments)?;
         Ok(Configured::new(name, varied, arguments.finish()?, strategy, points))
     }
+}
+
+/// The strategies of a list, each as its own text; commas between strategies and between parameters are told apart by
+/// the `=`.
+///
+/// # Errors
+/// An empty list.
+pub(super) fn texts(list: &str) -> Result<Vec<String>> {
+    let mut strategies: Vec<String> = Vec::new();
+    for part in sweep::parts(list) {
+        let continues = part.contains('=') && !part.split('=').next().is_some_and(|key| key.contains(':'));
+        match strategies.last_mut() {
+            Some(last) if continues => {
+                last.push(if last.contains(':') { ',' } else { ':' });
+                last.push_str(&part);
+            }
+            _ => strategies.push(part),
+        }
+    }
+    if strategies.is_empty() {
+        return Err(Error::Invalid("no strategy is named".into()));
+    }
+    Ok(strategies)
+}
+
+/// Refuses a list that holds the same strategy twice.
+pub(super) fn each_once<S: Borrow<Configured>>(strategies: &[S]) -> Result<()> {
+    for (i, strategy) in strategies.iter().enumerate() {
+        let name = strategy.borrow().plain_name();
+        if strategies[..i].iter().any(|before| before.borrow().plain_name() == name) {
+            return Err(Error::Invalid(format!("strategy `{name}` is named twice")));
+        }
+    }
+    Ok(())
 }
 
 /// The parameter of every strategy that draws numbers: how they are spread over a pixel's passes.

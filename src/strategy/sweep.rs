@@ -45,6 +45,9 @@ pub(super) fn expand(text: &str) -> Result<Vec<Swept>> {
         let Some(parameter) = before.strip_suffix('=').map(|b| b.rsplit([':', ',', ';']).next().unwrap_or(b)) else {
             return wrong("braces stand for a parameter's value, as in `light-tree:arity={2,4,8}`");
         };
+        if after[1..close].trim().is_empty() {
+            return wrong("`{}` holds no values; name some, as in `light-tree:arity={2,4,8}`");
+        }
         if after[1..close].contains('{') {
             return wrong("braces do not stand within braces");
         }
@@ -142,6 +145,7 @@ mod tests {
             ("power:mix=0}", "has no `{`"),
             ("power{1,2}", "a parameter's value"),
             ("power:mix={0,,1}", "empty value"),
+            ("power:mix={}", "holds no values"),
             ("power:mix={a..b}", "FIRST..LAST"),
             ("power:picks={4..1}", "must rise"),
             ("power:picks={0..8*2}", "must rise"),

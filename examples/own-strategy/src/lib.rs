@@ -14,6 +14,7 @@ impl Strategy for Systematic {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
+    const GRID: &'static str = "picks={1,2,4,8,16}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         Ok(Self { picks: arguments.count("picks", 4, 1..=64, "lights drawn a pass")? })

@@ -1,0 +1,97 @@
+//! How much work is a strategy on a frame, set-up and all, in nominal seconds?
+//!
+//! Counted by the same code that renders, at the committed [rates](super::work): the same on every machine. Counting a whole
+//! frame takes about as long as rendering it; at some squares of it, a part of that.
+
+use super::target::{Target, squares};
+use super::work::{nominal_s, setup_s};
+use crate::base::counts::Counts;
+use crate::base::random::RunKey;
+use crate::render::film::Film;
+use crate::render::passes::Plan;
+use crate::scene::receiver::Receiver;
+use crate::strategy::AnySampler;
+
+/// Nominal seconds of a strategy's parts on a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Work {
+    /// Building the sampler.
+    pub setup_s: f64,
+    /// Coming to every receiver of the frame once, whatever the number of passes.
+    pub arrive_s: f64,
+    /// A pass over the frame.
+    pub pass_s: f64,
+    /// What became of the samples that were counted.
+    pub counts: Counts,
+}
+
+/// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
+const SQUARES: usize = 16;
+
+impl Work {
+    /// Counted over so many passes, at least two, at some squares of a target's frame; at all of it for a sampler that
+    /// draws state for a pass or looks at its whole frame.
+    ///
+    /// What neighbours share who are further apart than a square, it takes for dearer than it is.
+    pub(crate) fn at_squares(target: &Target<'_>, sampler: &dyn AnySampler, key: RunKey, passes: u32) -> Self {
+        if sampler.most_passes() == 1 {
+            return Self::of_frame(target, sampler, key, passes);
+        }
+        Self::counted(target, &squares(&target.frame, SQUARES), sampler, key, passes)
+    }
+
+    /// Counted over so many passes, at least two, of a target's whole frame.
+    pub(crate) fn of_frame(target: &Target<'_>, sampler: &dyn AnySampler, key: RunKey, passes: u32) -> Self {
+        Self::counted(target, &target.frame, sampler, key, passes)
+    }
+
+    fn counted(
+        target: &Target<'_>,
+        receivers: &[Receiver],
+        sampler: &dyn AnySampler,
+        key: RunKey,
+        passes: u32,
+    ) -> Self {
+        let plan = Plan { stage: target.stage, receivers, sampler, key };
+        let count = |passes| plan.run_counting(passes, &mut Film::new(receivers.len()));
+        let scale = target.frame.len() as f64 / receivers.len().max(1) as f64;
+        let setup_s = setup_s(sampler.heap_bytes());
+        let counts = count(passes);
+        // State of one pass is drawn anew for each, and so is every arrival.
+        if sampler.most_passes() == 1 {
+            let pass_s = nominal_s(&counts) * scale / f64::from(passes);
+            return Self { setup_s, arrive_s: 0.0, pass_s, counts };
+        }
+        let one = nominal_s(&count(1)) * scale;
+        let pass_s = ((nominal_s(&counts) * scale - one) / f64::from(passes - 1)).max(0.0);
+        Self { setup_s, arrive_s: (one - pass_s).max(0.0), pass_s, counts }
+    }
+
+    /// Nominal seconds from nothing to the image of so many passes in one block.
+    pub(crate) fn seconds(&self, passes: u32) -> f64 {
+        self.setup_s + self.arrive_s + f64::from(passes) * self.pass_s
+    }
+
+    /// The number of passes whose nominal seconds come next to `seconds`: one at least, and `most` at most.
+    pub(crate) fn passes_next_to(&self, seconds: f64, most: u32) -> u32 {
+        let passes = (seconds - self.setup_s - self.arrive_s) / self.pass_s;
+        // Of a pass that takes nothing there may be any number.
+        (passes.round().min(f64::from(most)) as u32).max(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_come_next_to_a_time_from_either_side() {
+        let work = Work { setup_s: 0.01, arrive_s: 0.09, pass_s: 0.1, counts: Counts::default() };
+        for (seconds, passes) in [(0.0, 1), (0.24, 1), (0.26, 2), (1.14, 10), (1.16, 11), (1e9, 64)] {
+            assert_eq!(work.passes_next_to(seconds, 64), passes, "{seconds} s");
+        }
+        assert!((work.seconds(10) - 1.1).abs() < 1e-12);
+        let nothing = Work { pass_s: 0.0, ..work };
+        assert_eq!([1.0, 0.0].map(|seconds| nothing.passes_next_to(seconds, 64)), [64, 1]);
+    }
+}
