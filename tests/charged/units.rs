@@ -8,8 +8,12 @@ use citylights::base::random::RunKey;
 use citylights::measure::clock::{Cpu, Spent};
 use citylights::measure::engine::{Block, Engine, Meter};
 use citylights::measure::observer::Unobserved;
+use citylights::scene::Scene;
 use citylights::scene::receiver::Receiver;
 use citylights::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
+use citylights::visibility::offset::Offset;
+use citylights::visibility::stage::{LeaveOut, Stage};
+use citylights::visibility::visits::Receivers;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -86,6 +90,9 @@ fn a_thread_of_its_own_is_found_by_the_clock_of_the_process() {
     assert!(own > 0.8 && none < 0.1, "{own} of a thread of its own, {none} without");
 }
 
+/// CPU seconds of an arrival of [`Arriving`].
+const ARRIVAL: f64 = 2e-5;
+
 /// How often [`Arriving`] came to a receiver, and chose there.
 static ARRIVED: AtomicU64 = AtomicU64::new(0);
 static SAMPLED: AtomicU64 = AtomicU64::new(0);
@@ -112,6 +119,7 @@ impl LightSampler for Arriving {
 
     fn arrive<T: Tally>(&self, _at: &Receiver, (): &mut (), _tally: &mut T) {
         ARRIVED.fetch_add(1, Ordering::Relaxed);
+        spin(ARRIVAL);
     }
 
     fn sample<T: Tally>(&self, _at: &Receiver, _draws: &mut Draws, (): &mut (), out: &mut Picks<'_, T>) {
@@ -143,5 +151,30 @@ fn a_block_pays_for_arrival_once() {
         let [arrived, sampled] = [&ARRIVED, &SAMPLED].map(|count| count.load(Ordering::Relaxed));
         // At the first receiver twice: its first pass stands alone, and says how many calls are made together.
         assert_eq!((arrived - before[0], sampled - before[1]), (receivers + 1, receivers * u64::from(passes)));
+    }
+}
+
+#[test]
+fn where_receivers_move_every_pass_pays_for_its_own_arrivals() {
+    let Some(_alone) = to_itself() else { return };
+    let strategy = Registry::empty().with::<Arriving>().parse("arriving").expect("a strategy");
+    let engine = Engine { clock: &Cpu::new(), workers: 1, seed: 1 };
+    for receivers in [Receivers::Spread, Receivers::Bounce] {
+        let scene = Scene::new(sixteen()).expect("a scene");
+        let stage = Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, receivers);
+        for passes in [1, 3] {
+            let visited = |pass| stage.receivers().iter().filter(|at| stage.visited(at, pass).is_some()).count() as u64;
+            let visits: u64 = (0..passes).map(visited).sum();
+            let before = [&ARRIVED, &SAMPLED].map(|count| count.load(Ordering::Relaxed));
+            let key = RunKey { seed: 1, run: 0 };
+            let block = Block { stage: &stage, receivers: stage.receivers(), strategy: &strategy, key, passes };
+            let done = engine.alone(|meter| block.run(meter)).expect("a pool").expect("an image");
+            let [arrived, sampled] = [&ARRIVED, &SAMPLED].map(|count| count.load(Ordering::Relaxed));
+            assert_eq!((arrived - before[0], sampled - before[1]), (visits, visits), "{} {passes}", receivers.name());
+            // Finding the receivers is charged to nobody.
+            let share = done.sampling.cpu / (visits as f64 * ARRIVAL);
+            println!("{}: {passes} passes are charged {share:.3} of their arrivals", receivers.name());
+            assert!((0.9..=1.3).contains(&share), "{}: {share:.3} of {passes} passes", receivers.name());
+        }
     }
 }

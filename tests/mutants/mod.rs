@@ -5,6 +5,7 @@
 //! | `gate` | one thing in a choice by flux: a weight, a count, a light, a random number, an allocation |
 //! | `machinery` | even numbers, frames, reservoirs, trees, mixtures, units of length |
 //! | `frames` | weights of whole frames whose counts nobody tells |
+//! | `moved` | right where receivers stay, wrong where they move |
 //! | `runs` | right in one run, wrong over several |
 //! | `truth` | the code that the truth shares with what it judges |
 //! | `visible` | chances that are learned |
@@ -14,6 +15,7 @@
 mod frames;
 mod gate;
 mod machinery;
+mod moved;
 mod runs;
 mod truth;
 mod visible;

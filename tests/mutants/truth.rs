@@ -13,6 +13,7 @@ use citylights::verify::Check;
 use citylights::verify::independent::{Own, Path, independent};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
+use citylights::visibility::visits::Receivers;
 use glam::{DVec3, Vec3};
 use std::sync::LazyLock;
 
@@ -157,4 +158,20 @@ fn an_exact_sum_short_of_one_percent_is_seen() {
 #[test]
 fn a_spot_one_percent_too_bright_is_seen() {
     assert_eq!(faults(Fault::Bright), ["contribution"]);
+}
+
+#[test]
+fn passes_that_visit_what_another_pixel_sees_are_seen() {
+    for receivers in [Receivers::Spread, Receivers::Bounce] {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/first-night.toml");
+        let scene = load(&file, &Overrides::default()).expect("a shipped scene");
+        let stage = Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, receivers);
+        let failed = |fault| -> Vec<Check> {
+            let checks = independent(&stage, &Mutant::new(&stage, fault), 1, LEVEL);
+            checks.into_iter().filter(|check| !check.passed).collect()
+        };
+        let right = independent(&stage, &Own(&stage), 1, LEVEL);
+        assert!(right.iter().all(|check| check.passed), "{right:?}");
+        assert_eq!(failed(Fault::Beside).iter().map(|check| check.name).collect::<Vec<_>>(), ["visits"]);
+    }
 }
