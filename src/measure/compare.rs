@@ -224,6 +224,8 @@ fn record(
         file: file.to_owned(),
         hash: scene_hash(stage.scene()),
         seed: stage.scene().seed(),
+        family: None,
+        view: None,
         lights: stage.scene().lights().len() as u64,
         width,
         height,

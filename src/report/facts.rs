@@ -10,8 +10,9 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
     let SceneRecord { width, height, reference, .. } = scene;
     let share = |part: f64| percent(part, 1.0);
     let [red, green, blue] = scene.rel_mse_epsilon.map(short);
+    let view = scene.view.as_ref().map(|view| format!(", view {view}")).unwrap_or_default();
     let mut facts = vec![
-        format!("{} (hash {}, seed {}), {} lights", scene.file, scene.hash, scene.seed, grouped(scene.lights)),
+        format!("{} (hash {}, seed {}{view}), {} lights", scene.file, scene.hash, scene.seed, grouped(scene.lights)),
         format!(
             "{width} x {height} pixels: {} receivers, sky {} %, emitters {} %",
             grouped(scene.receivers),

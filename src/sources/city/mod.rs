@@ -30,6 +30,7 @@ mod signs;
 mod solid;
 mod tag;
 mod traffic;
+mod views;
 mod windows;
 
 #[cfg(feature = "recipe")]
@@ -38,6 +39,8 @@ pub use generate::{Grown, generate};
 #[cfg(feature = "recipe")]
 pub(crate) use materials::builtin_materials;
 pub use solid::Solid;
+#[cfg(feature = "recipe")]
+pub(crate) use views::{Standpoint, stand};
 
 pub use beacons::Beacons;
 pub use buildings::Buildings;
@@ -49,4 +52,5 @@ pub use plan::City;
 pub use shops::Shops;
 pub use signs::Signs;
 pub use traffic::Traffic;
+pub use views::View;
 pub use windows::Windows;
