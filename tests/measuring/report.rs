@@ -195,7 +195,7 @@ fn oracle() -> Summary {
     }
 }
 
-fn record() -> (RunRecord, Vec<Row>) {
+pub(super) fn record() -> (RunRecord, Vec<Row>) {
     let mut rows: Vec<Row> = makers().iter().flat_map(Maker::rows).collect();
     let failure = "a light that contributes is never chosen: light 17, p = 0.0001".to_owned();
     rows.push(Row::failed("village".to_owned(), "broken".to_owned(), 0, 1, failure.clone()));

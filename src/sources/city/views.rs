@@ -135,14 +135,14 @@ fn roof(town: &Town, stream: &mut Stream) -> Option<Standpoint> {
     let Faced { side, street, .. } = faced[stream.below(faced.len())];
     let wall = Wall::of(building.top().low, building.top().high, side);
     let eye = wall.point(0.5 * wall.width, wall.height + EYE, -FROM_EDGE);
-    // As far along the street as to its middle, towards the middle of the city.
+    // Along the street towards the middle of the city; less than across it, or the roof itself would fill a corner.
     let along = DVec3::new(-wall.out.y, wall.out.x, 0.0);
     let along = if along.truncate().dot(centre - eye.truncate()) < 0.0 { -along } else { along };
+    let level = wall.out + 0.7 * along;
     let off = (street - eye.dot(wall.out.abs())).abs();
-    let level = (wall.out + along).normalize();
-    let down = (off * (wall.out + along)).with_z(-eye.z).normalize();
+    let down = (off * level).with_z(-eye.z).normalize();
     // Halfway between the horizon and the middle of the street.
-    Some(Standpoint::of(eye, eye + 40.0 * (level + down).normalize()))
+    Some(Standpoint::of(eye, eye + 40.0 * (level.normalize() + down).normalize()))
 }
 
 /// A street that a building faces.
@@ -184,4 +184,111 @@ fn sky(town: &Town, stream: &mut Stream) -> Standpoint {
 fn centre(layout: &Layout) -> DVec2 {
     let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
     DVec2::new(middle(layout.x.ends()), middle(layout.y.ends()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sources::city::{Buildings, Lamps, generate};
+
+    /// The standpoint of a view, which lies in the city and in no building.
+    fn stood(plan: &City, seed: u64, view: View) -> Standpoint {
+        let at = stand(plan, seed, view).unwrap_or_else(|error| panic!("{} of seed {seed}: {error}", view.name()));
+        let grown = generate(plan, seed).expect("a plan within its ranges");
+        let within = grown.solids.iter().find(|solid| solid.contains(at.eye.as_vec3()));
+        assert!(within.is_none(), "{} of seed {seed} stands in {within:?}: {at:?}", view.name());
+        let corners = || grown.surfaces.iter().flat_map(|surface| surface.corners).map(|corner| corner.truncate());
+        let [low, high] =
+            [corners().reduce(glam::Vec2::min), corners().reduce(glam::Vec2::max)].map(Option::unwrap_or_default);
+        let eye = at.eye.as_vec3().truncate();
+        assert!(eye.cmpge(low).all() && eye.cmple(high).all(), "{} of seed {seed} stands outside: {at:?}", view.name());
+        assert!(at.eye.distance(at.target) > 10.0 && at.eye.is_finite(), "{at:?}");
+        at
+    }
+
+    fn plans() -> [(&'static str, City); 5] {
+        let built = |buildings| City { buildings: Some(buildings), lamps: Some(Lamps::default()), ..City::default() };
+        [
+            ("usual", built(Buildings::default())),
+            ("one block", City { lights: 1, density: 1e6, ..built(Buildings::default()) }),
+            (
+                "one lot a block",
+                City {
+                    lights: 400,
+                    block: [40.0, 44.0],
+                    pavement: 10.0,
+                    ..built(Buildings { lot: 100.0, ..Buildings::default() })
+                },
+            ),
+            (
+                "towers over alleys",
+                City {
+                    street: [6.0, 7.0],
+                    ..built(Buildings { height: 300.0, spread: 1.0, tallest: 900.0, ..Buildings::default() })
+                },
+            ),
+            (
+                "low over wide streets",
+                City { street: [70.0, 80.0], ..built(Buildings { height: 5.0, spread: 0.0, ..Buildings::default() }) },
+            ),
+        ]
+    }
+
+    #[test]
+    fn every_plan_has_its_views() {
+        for ((name, plan), seed) in plans().into_iter().flat_map(|plan| (1..=20).map(move |seed| (plan.clone(), seed)))
+        {
+            let grown = generate(&plan, seed).expect(name);
+            let tallest = grown.solids.iter().map(|solid| solid.high.z).fold(0.0, f32::max);
+            let street = stood(&plan, seed, View::Street);
+            assert!((street.eye.z - EYE).abs() < 1e-3 && street.target.z > street.eye.z, "{name}: {street:?}");
+            let roof = stood(&plan, seed, View::Roof);
+            let below = |solid: &&crate::sources::city::Solid| {
+                let foot = roof.eye.with_z(roof.eye.z - EYE - 0.01).as_vec3();
+                solid.contains(foot)
+            };
+            assert!(grown.solids.iter().any(|solid| below(&solid)), "{name}: no roof below {roof:?}");
+            assert!(roof.target.z < roof.eye.z, "{name}: {roof:?}");
+            let sky = stood(&plan, seed, View::Sky);
+            assert!(
+                sky.eye.z >= HIGH && sky.eye.z >= f64::from(tallest) + CLEAR - 1e-3,
+                "{name}: {sky:?} over {tallest}"
+            );
+            assert_eq!(sky.target.z, 0.0, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_roof_needs_a_building_and_nothing_else_does() {
+        for plan in [City::default(), City { squares: 1.0, buildings: Some(Buildings::default()), ..City::default() }] {
+            let error = stand(&plan, 1, View::Roof).expect_err("no roof").to_string();
+            assert!(error.contains("no building") && error.contains("`street` and `sky`"), "{error}");
+            stood(&plan, 1, View::Street);
+            stood(&plan, 1, View::Sky);
+        }
+    }
+
+    #[test]
+    fn a_city_of_a_million_lights_is_seen_from_its_middle() {
+        let plan = City { lights: 1_000_000, buildings: Some(Buildings::default()), ..City::default() };
+        let reach = 0.5 * (plan.lights as f64 / plan.density * 1e6).sqrt();
+        for view in View::ALL {
+            let at = stand(&plan, 1, view).expect("a view");
+            let off = at.eye.truncate().abs().max_element();
+            assert!(off < 0.4 * reach, "{} stands {off} m from the middle of a city of {reach} m", view.name());
+        }
+    }
+
+    #[test]
+    fn a_view_follows_from_the_plan_and_the_seed() {
+        let [(_, plan), ..] = plans();
+        for view in View::ALL {
+            let at = stand(&plan, 5, view).expect("a view");
+            assert_eq!(at, stand(&plan, 5, view).expect("a view"));
+            assert_ne!(at, stand(&plan, 6, view).expect("a view"));
+            for coordinate in at.eye.to_array().into_iter().chain(at.target.to_array()) {
+                assert_eq!((coordinate * 1024.0).fract(), 0.0, "{at:?}");
+            }
+        }
+    }
 }
