@@ -62,7 +62,8 @@ struct Axis {
 impl Axis {
     /// An axis that holds 1 and all dots, with some room; intervals may go on beyond it.
     fn over(bars: &[Bar]) -> Self {
-        let ratios = bars.iter().flat_map(|bar| &bar.dots).map(|(ratio, _)| *ratio);
+        // What overflows or vanishes is held at the frame.
+        let ratios = bars.iter().flat_map(|bar| &bar.dots).map(|(ratio, _)| ratio.clamp(1e-100, 1e100));
         let (low, high) = ratios.fold((1.0f64, 1.0f64), |(low, high), ratio| (low.min(ratio), high.max(ratio)));
         let room = (high / low).powf(0.06).max(1.2);
         Self { low: low / room, high: high * room }

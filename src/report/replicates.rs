@@ -5,7 +5,7 @@
 //! replicates says how far another city may be from them.
 
 use super::markdown;
-use super::number::{Estimate, NONE, short};
+use super::number::{Estimate, NONE, grouped, short};
 use super::order::measured;
 use super::page::made_by;
 use super::ratios::{Bar, ratios};
@@ -48,13 +48,7 @@ struct Row<'a> {
 /// The families of a comparison that have two replicates or more, in the order of their first scenes.
 pub(super) fn families(run: &RunRecord) -> Vec<Family<'_>> {
     let Some(base) = run.base.as_deref() else { return Vec::new() };
-    let mut names: Vec<&str> = Vec::new();
-    let named = run.scenes.iter().filter_map(|scene| scene.family.as_deref());
-    named.for_each(|name| {
-        if !names.contains(&name) {
-            names.push(name)
-        }
-    });
+    let names = distinct(run.scenes.iter().filter_map(|scene| scene.family.as_deref()));
     let scenes = |name: &str| run.scenes.iter().filter(|scene| scene.family.as_deref() == Some(name)).collect();
     let all = names.into_iter().map(|name| (name, scenes(name)));
     all.filter(|(_, scenes): &(_, Vec<_>)| scenes.len() > 1)
@@ -69,13 +63,8 @@ pub(crate) fn texts(run: &RunRecord, width: usize) -> Vec<String> {
 
 impl<'a> Family<'a> {
     fn of(name: &'a str, scenes: Vec<&'a SceneRecord>, base: &'a str) -> Self {
-        let mut strategies: Vec<&str> = Vec::new();
         let unbiased = scenes.iter().flat_map(|scene| &scene.summaries).filter(|s| s.claim == Claim::Unbiased);
-        unbiased.for_each(|s| {
-            if !strategies.contains(&s.strategy.as_str()) {
-                strategies.push(&s.strategy)
-            }
-        });
+        let strategies = distinct(unbiased.map(|summary| summary.strategy.as_str()));
         let figures = |strategy: &&str| scenes.iter().map(|scene| figure(scene, strategy)).collect();
         let replicates = Replicates::of(strategies.iter().map(figures).collect());
         let base_row = strategies.iter().position(|strategy| *strategy == base);
@@ -103,7 +92,7 @@ impl<'a> Family<'a> {
         scene.family.as_deref() == Some(self.name)
     }
 
-    /// What it is, in a line: `downtown: 20 replicates, seeds 17 to 36`.
+    /// What it is: `downtown: 20 replicates`.
     fn title(&self) -> String {
         format!("{}: {} replicates", self.name, self.scenes.len())
     }
@@ -113,19 +102,17 @@ impl<'a> Family<'a> {
         let mut seeds: Vec<u64> = self.scenes.iter().map(|scene| scene.seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
-        let mut views: Vec<&str> = Vec::new();
-        let own = |scene: &'a SceneRecord| scene.view.as_deref().unwrap_or("the file's camera");
-        self.scenes.iter().map(|scene| own(scene)).for_each(|view| {
-            if !views.contains(&view) {
-                views.push(view)
-            }
-        });
         let cities = match &seeds[..] {
             [seed] => format!("one city, seed {seed}"),
             [first, .., last] => format!("{} cities, seeds {first} to {last}", seeds.len()),
             [] => String::new(),
         };
-        vec![format!("{cities}; views: {}", views.join(", "))]
+        vec![format!("{cities}; views: {}", self.views().join(", "))]
+    }
+
+    /// The views that there are, in the order of the scenes.
+    fn views(&self) -> Vec<&'a str> {
+        distinct(self.scenes.iter().map(|scene| view_of(scene)))
     }
 
     fn sheet(&self) -> Sheet {
@@ -196,7 +183,7 @@ impl<'a> Family<'a> {
             None => Some(format!("not asked for in {}", scene.name)),
             Some(Summary { error: Some(_), .. }) => Some(format!("failed in {}", scene.name)),
             Some(Summary { skipped: Some(_), .. }) => Some(format!("not run in {}", scene.name)),
-            Some(_) => Some(format!("exact in {}", scene.name)),
+            Some(_) => Some(format!("without a figure in {}", scene.name)),
         };
         self.scenes.iter().filter_map(why).collect()
     }
@@ -215,8 +202,9 @@ impl<'a> Family<'a> {
         let mut text = self.body(1, &plot);
         _ = write!(text, "\n## Replicates\n\n");
         for scene in &self.scenes {
-            let page = format!("{}.md", store::file_name(&scene.name));
-            _ = writeln!(text, "- [{}]({page}): {}", markdown::label(&scene.name), markdown::plain(&scene.hash));
+            let (name, page) = (markdown::label(&scene.name), store::file_name(&scene.name));
+            let (lights, hash) = (grouped(scene.lights), markdown::plain(&scene.hash));
+            _ = writeln!(text, "- [{name}]({page}.md): {lights} lights, hash {hash}");
         }
         text + &made_by(run)
     }
@@ -241,14 +229,8 @@ impl<'a> Family<'a> {
     /// # Errors
     /// A plot that cannot be drawn.
     pub(super) fn plot(&self) -> Result<String> {
-        let mut views: Vec<&str> = Vec::new();
-        let view_of = |scene: &&'a SceneRecord| scene.view.as_deref().unwrap_or("the file's camera");
-        self.scenes.iter().for_each(|scene| {
-            if !views.contains(&view_of(scene)) {
-                views.push(view_of(scene))
-            }
-        });
-        let of = |at: usize| views.iter().position(|view| *view == view_of(&self.scenes[at])).unwrap_or(0);
+        let views = self.views();
+        let of = |at: usize| views.iter().position(|view| *view == view_of(self.scenes[at])).unwrap_or(0);
         let bars = self.rows.iter().filter_map(|row| {
             let dots = row.dots.iter().map(|&(at, ratio)| (ratio, of(at))).collect();
             Some(Bar { name: row.strategy.to_owned(), interval: interval(&row.ratio?), dots })
@@ -259,6 +241,22 @@ impl<'a> Family<'a> {
         );
         ratios(&self.title(), &subtitle, &bars.collect::<Vec<_>>(), &views)
     }
+}
+
+/// What a scene is seen by.
+fn view_of(scene: &SceneRecord) -> &str {
+    scene.view.as_deref().unwrap_or("the file's camera")
+}
+
+/// Each name once, in the order of its first place.
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found = Vec::new();
+    names.for_each(|name| {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    });
+    found
 }
 
 fn interval(ratio: &Ratio) -> Interval {

@@ -210,7 +210,7 @@ mod tests {
         let built = |buildings| City { buildings: Some(buildings), lamps: Some(Lamps::default()), ..City::default() };
         [
             ("usual", built(Buildings::default())),
-            ("one block", City { lights: 1, density: 1e6, ..built(Buildings::default()) }),
+            ("one block", City { lights: 1, density: 1e6, squares: 0.0, ..built(Buildings::default()) }),
             (
                 "one lot a block",
                 City {
