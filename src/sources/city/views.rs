@@ -197,7 +197,7 @@ mod tests {
         let grown = generate(plan, seed).expect("a plan within its ranges");
         let within = grown.solids.iter().find(|solid| solid.contains(at.eye.as_vec3()));
         assert!(within.is_none(), "{} of seed {seed} stands in {within:?}: {at:?}", view.name());
-        let corners = || grown.surfaces.iter().flat_map(|surface| surface.corners).map(|corner| corner.truncate());
+        let corners = || grown.surfaces.iter().flat_map(|surface| surface.corners).map(glam::Vec3::truncate);
         let [low, high] =
             [corners().reduce(glam::Vec2::min), corners().reduce(glam::Vec2::max)].map(Option::unwrap_or_default);
         let eye = at.eye.as_vec3().truncate();

@@ -106,7 +106,7 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
 
     let grown = grown.unwrap_or_default();
     if let Some(solid) = grown.solids.iter().find(|solid| solid.contains(eye.as_vec3())) {
-        return Err(inside(&camera_table, "a building of the city", *solid));
+        return Err(inside(&camera_table, &format!("a building of the city of seed {seed}"), *solid));
     }
     let Grown { lights: mut all, mut groups, surfaces: mut triangles, notes, .. } = grown;
     let (placed, materials) = by_hand.finish(shift);
