@@ -1,5 +1,5 @@
 //! What everything else stands on: random streams, discrete distributions, numbers of double precision, triangles,
-//! statistics, intervals, rankings, relative error, colour, files, errors.
+//! statistics, intervals, rankings, replicates, relative error, colour, files, errors.
 
 pub mod claim;
 pub mod colour;
@@ -18,5 +18,7 @@ pub mod random;
 #[cfg(feature = "measure")]
 pub(crate) mod ranking;
 pub(crate) mod rel_mse;
+#[cfg(feature = "measure")]
+pub(crate) mod replicates;
 pub(crate) mod statistics;
 pub(crate) mod triangle;

@@ -116,6 +116,24 @@ impl Verdicts {
     }
 }
 
+/// Where a figure stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// First and last rank that are allowed.
+    pub rank: [u32; 2],
+    /// Shared with every figure that it is not told apart from.
+    pub letters: String,
+}
+
+/// The places of figures, in the order given; `sorted` names them least first, as `verdicts` takes them.
+pub(crate) fn places(sorted: &[usize], verdicts: &Verdicts) -> Vec<Place> {
+    let of = sorted.iter().zip(verdicts.ranks().into_iter().zip(verdicts.letters()));
+    let mut places: Vec<(usize, Place)> =
+        of.map(|(&i, ((first, last), letters))| (i, Place { rank: [first as u32, last as u32], letters })).collect();
+    places.sort_by_key(|(i, _)| *i);
+    places.into_iter().map(|(_, place)| place).collect()
+}
+
 /// The groups without those that lie within another.
 fn absorbed(groups: Vec<Vec<bool>>) -> Vec<Vec<bool>> {
     let within = |a: &[bool], b: &[bool]| a.iter().zip(b).all(|(a, b)| !a || *b);

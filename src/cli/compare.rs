@@ -4,25 +4,26 @@ use super::folders::{CACHE, RESULTS};
 use super::home::Home;
 use super::outcome::Outcome;
 use super::progress::Progress;
+use super::replicates::{Entry, ReplicateOptions};
 use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
 use super::values::seconds;
+use crate::base::claim::Claim;
 use crate::base::error::{Error, Result};
 use crate::measure::clock::Cpu;
 use crate::measure::compare::{Compared, ComparisonOptions, compare};
 use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
-use crate::measure::reference::{WORK_S, scene_hash};
+use crate::measure::reference::WORK_S;
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::environment;
-use crate::record::store::{self, RowWriter, file_name, write_run};
+use crate::record::store::{self, RowWriter, write_run};
 use crate::record::{Kind, Machine, ResultFolder, Row, RunRecord, SCHEMA};
 use crate::report;
-use crate::report::table;
-use crate::scene::Scene;
+use crate::report::{replicates, table};
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 use crate::visibility::visits::Receivers;
@@ -79,6 +80,12 @@ pub(super) struct Arguments {
     /// of it; bounce: what a ray from there meets next, as in a path tracer. Where they move, each is arrived at once
     #[arg(long, value_name = "centre|spread|bounce", default_value = "centre", value_parser = receivers)]
     receivers: Receivers,
+    /// Of many cities and views, the unbiased strategy that all others are held against: light-tree by default, or where that
+    /// is not compared the first
+    #[arg(long, value_name = "NAME")]
+    base: Option<String>,
+    #[command(flatten)]
+    replicates: ReplicateOptions,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
@@ -91,22 +98,15 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         let text = "a peer renders what pixels see through their centres: leave out --peer, or take --receivers centre";
         return Err(Error::Invalid(text.into()).into());
     }
+    let base = base(arguments, home, &strategies)?;
     // A folder that cannot be used must not cost the reading of scenes.
     arguments.out.as_deref().map_or(Ok(()), |out| ResultFolder::check(out, Kind::Comparison))?;
     let progress = Progress::new()?;
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
-        // Every scene is read before anything is measured: a mistake in the last must not cost an hour.
-        let scenes =
-            arguments.scenes.iter().map(|file| arguments.scene_options.load(file)).collect::<Result<Vec<_>>>()?;
-        let names: Vec<String> = scenes.iter().map(|scene| file_name(scene.name())).collect();
-        if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-            return Err(
-                Error::Invalid(format!("two scenes are named `{}`; rows could not be told apart", twice.1)).into()
-            );
-        }
+        let scenes = arguments.replicates.entries(&arguments.scenes, &arguments.scene_options)?;
         let asked = Asked { home, arguments, strategies: &strategies, peers: &peers, threads };
-        let record = record(&asked, &scenes);
+        let record = RunRecord { base, ..record(&asked, &scenes) };
         if threads > environment::cores() {
             say(&format!(
                 "{threads} runs side by side on {} cores: wall times will mean nothing",
@@ -115,12 +115,14 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         }
         let Some(mut session) = Session::open(arguments, record, &scenes)? else { return Ok(Outcome::Done) };
         progress.last_words(&kept(&session.folder));
-        for (scene, file) in scenes.into_iter().zip(&arguments.scenes) {
-            progress.scene(scene.name());
-            let stage = arguments.scene_options.prepare(scene, arguments.receivers);
-            session.scene(&stage, file, &asked, &progress)?;
+        for mut entry in scenes {
+            progress.scene(&entry.name);
+            let scene = entry.take()?;
+            let stage = entry.options.prepare(scene, arguments.receivers);
+            session.scene(&stage, &entry, &asked, &progress)?;
         }
         session.finish()?;
+        print_families(&session.record)?;
         say(&format!("rows, tables and plots: {}", session.folder.path().display()));
         Ok(session.outcome())
     })
@@ -150,11 +152,11 @@ struct Session {
 impl Session {
     /// Begins the comparison that `record` describes, or goes on with it where it was begun; one that has been finished
     /// is shown, and there is nothing to do.
-    fn open(arguments: &Arguments, mut record: RunRecord, scenes: &[Scene]) -> anyhow::Result<Option<Self>> {
+    fn open(arguments: &Arguments, mut record: RunRecord, scenes: &[Entry]) -> anyhow::Result<Option<Self>> {
         let folder = match &arguments.out {
             Some(folder) => ResultFolder::open(folder, Kind::Comparison)?,
             None => {
-                let names = scenes.iter().map(Scene::name).collect::<Vec<_>>().join("+");
+                let names = arguments.replicates.folder_name(scenes);
                 let RunRecord { date, revision, .. } = &record;
                 ResultFolder::create(Path::new(RESULTS), date, &names, revision, Kind::Comparison)?
             }
@@ -174,7 +176,7 @@ impl Session {
         Ok(Some(Self { folder, record, rows, films, before, nothing: Vec::new() }))
     }
 
-    fn scene(&mut self, stage: &Stage, file: &Path, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
+    fn scene(&mut self, stage: &Stage, entry: &Entry, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
         let Asked { home, arguments, strategies, peers, threads } = *asked;
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
@@ -182,7 +184,7 @@ impl Session {
             typed: &format!(
                 "{} verify {}{}",
                 home.program.name,
-                arguments.scene_options.typed(file),
+                entry.options.typed(&entry.file),
                 if arguments.receivers.moves() {
                     format!(" --receivers {}", arguments.receivers.name())
                 } else {
@@ -202,7 +204,7 @@ impl Session {
             cache: &arguments.cache,
             films: &self.films,
         };
-        let file = file.display().to_string();
+        let file = entry.file.display().to_string();
         let resumable = |error: &Error| {
             if matches!(error, Error::Interrupted) {
                 say(&kept(&self.folder));
@@ -230,6 +232,8 @@ impl Session {
                 say(&format!("peer `{}`: {why}", summary.strategy));
             }
         }
+        scene.family.clone_from(&entry.family);
+        scene.view = entry.options.view().map(|view| view.name().to_owned());
         scene.notes.extend(others.notes);
         scene.summaries.extend(others.summaries);
         rows.extend(others.rows);
@@ -281,6 +285,7 @@ fn kept(folder: &ResultFolder) -> String {
 fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
     let rows = store::read_rows(folder)?.rows;
     record.scenes.iter().try_for_each(|scene| print(&format!("{}\n", table(record, scene, &rows, width()))))?;
+    print_families(record)?;
     let (folder, date) = (folder.display(), &record.date);
     say(&format!(
         "{folder} holds this comparison, finished ({date}); results are never overwritten: nothing was measured"
@@ -288,10 +293,15 @@ fn again(folder: &Path, record: &RunRecord) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
+/// Shows what all cities and views of a recipe say together.
+fn print_families(record: &RunRecord) -> anyhow::Result<()> {
+    replicates::texts(record, width()).into_iter().try_for_each(|text| print(&format!("{text}\n")))
+}
+
+fn record(asked: &Asked<'_>, scenes: &[Entry]) -> RunRecord {
     let Asked { home, arguments, strategies, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
-    let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name(), scene_hash(scene))).collect();
+    let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name, scene.hash)).collect();
     RunRecord {
         plan: format!(
             "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}; receivers {}",
@@ -318,11 +328,35 @@ fn record(asked: &Asked<'_>, scenes: &[Scene]) -> RunRecord {
         machine: Machine { cpu: environment::cpu(), cores: environment::cores(), os: environment::os() },
         compiler: environment::compiler(),
         flags: environment::flags(),
+        base: None,
         warnings: environment::warnings(),
         finished: false,
         scenes: Vec::new(),
     }
 }
+
+/// The strategy that others are held against over many cities and views.
+fn base(arguments: &Arguments, home: &Home<'_>, strategies: &[Configured]) -> Result<Option<String>> {
+    let unbiased = || strategies.iter().filter(|s| s.info().claim == Claim::Unbiased).map(Configured::name);
+    let listed = || format!("one of {} is right", unbiased().collect::<Vec<_>>().join(", "));
+    match &arguments.base {
+        Some(_) if !arguments.replicates.are_wanted() => {
+            Err(Error::Invalid("--base is for many cities or views: it needs --cities or --views".into()))
+        }
+        None if !arguments.replicates.are_wanted() => Ok(None),
+        Some(given) => {
+            let base = home.registry.parse(given)?;
+            let found = unbiased().find(|name| *name == base.name()).map(str::to_owned);
+            let refuse =
+                || Error::Invalid(format!("--base `{given}` is no unbiased strategy that is compared; {}", listed()));
+            found.map(Some).ok_or_else(refuse)
+        }
+        None => Ok(unbiased().find(|name| *name == BASE).or_else(|| unbiased().next()).map(str::to_owned)),
+    }
+}
+
+/// See [`base`].
+const BASE: &str = "light-tree";
 
 /// Most runs of a peer: they are dear, and each is a whole image at every sample count.
 const PEER_RUNS: u32 = 8;

@@ -14,6 +14,7 @@
 //! | what asks the program to stop? | `signals` |
 //! | is something said while a scene is read and prepared? | `waiting` |
 //! | which scene does it take, and how is that prepared? | `scene` |
+//! | which cities and views of it does a comparison take? | `replicates` |
 //! | which text of an option is right? | `values` |
 //! | how many threads does it run on? | `threads` |
 //! | can its file be written, and how is a picture? | `output` |
@@ -34,6 +35,7 @@ mod output;
 mod progress;
 mod reference;
 mod render;
+mod replicates;
 mod report;
 mod run;
 mod scene;

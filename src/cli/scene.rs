@@ -9,6 +9,7 @@ use crate::base::names;
 use crate::report::grouped;
 use crate::scene::Scene;
 use crate::scene::light_sampling::LightSampling;
+use crate::sources::city::View;
 use crate::sources::{self, Overrides};
 use crate::visibility::offset::Offset;
 use crate::visibility::stage::{LeaveOut, Stage};
@@ -17,11 +18,14 @@ use clap::Args;
 use std::path::Path;
 
 /// Options of every verb that takes a scene.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(super) struct SceneOptions {
     /// Seed of the city, instead of the recipe's; a glTF file has none
     #[arg(long, value_name = "N")]
     scene_seed: Option<u64>,
+    /// A view that the generator places in a recipe's city, instead of the recipe's camera: street, roof, sky
+    #[arg(long, value_name = "NAME", value_parser = view)]
+    view: Option<View>,
     /// Pixels across and down, instead of the file's
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     resolution: Option<(u32, u32)>,
@@ -49,22 +53,28 @@ pub(super) struct SceneOptions {
 }
 
 impl SceneOptions {
-    /// Loads a scene.
+    /// Loads a scene, and says what its reader noted.
     pub(super) fn load(&self, path: &Path) -> Result<Scene, Error> {
+        let scene = self.open(path)?;
+        for note in scene.notes() {
+            say(&format!("{}: {note}", scene.name()));
+        }
+        Ok(scene)
+    }
+
+    /// Loads a scene.
+    pub(super) fn open(&self, path: &Path) -> Result<Scene, Error> {
         let ev100 = self.exposure.map(colour::ev100).or(self.ev100);
         let overrides = Overrides {
             seed: self.scene_seed,
             resolution: self.resolution,
             ev100,
             lights: None,
+            view: self.view,
             camera: self.camera.clone(),
             lamps_divided_by: self.lamps_divided_by,
         };
-        let scene = while_long(&format!("{}: being read", path.display()), || sources::open(path, &overrides))?;
-        for note in scene.notes() {
-            say(&format!("{}: {note}", scene.name()));
-        }
-        Ok(scene)
+        while_long(&format!("{}: being read", path.display()), || sources::open(path, &overrides))
     }
 
     /// The file and these options as one would type them.
@@ -76,6 +86,7 @@ impl SceneOptions {
             typed.extend(value.map(|value| format!(" --{option} {}", quoted(&value))));
         };
         add("scene-seed", self.scene_seed.map(|seed| seed.to_string()));
+        add("view", self.view.map(|view| view.name().to_owned()));
         add("resolution", self.resolution.map(|(width, height)| format!("{width}x{height}")));
         add("camera", self.camera.clone());
         add("lamps-divided-by", self.lamps_divided_by.map(|by| by.to_string()));
@@ -87,6 +98,16 @@ impl SceneOptions {
         add("light-sampling", sampling.map(|by| by.name().to_owned()));
         add("leave-out", (self.leave_out == LeaveOut::No).then(|| "off".to_owned()));
         typed
+    }
+
+    /// The same options for a city and a view of a recipe, where they are given.
+    pub(super) fn of_replicate(&self, seed: Option<u64>, view: Option<View>) -> Self {
+        Self { scene_seed: seed.or(self.scene_seed), view: view.or(self.view), ..self.clone() }
+    }
+
+    /// The view that is asked for in place of a recipe's camera.
+    pub(super) fn view(&self) -> Option<View> {
+        self.view
     }
 
     /// The options that decide an image beside the scene itself.
@@ -131,6 +152,12 @@ impl SceneOptions {
 pub(super) fn receivers(text: &str) -> Result<Receivers, String> {
     let known = Receivers::NAMED.map(|(name, _)| name);
     Receivers::named(text).ok_or_else(|| right(text, &known))
+}
+
+/// Parses the name of a view.
+pub(super) fn view(text: &str) -> Result<View, String> {
+    let known = View::ALL.map(View::name);
+    View::ALL.into_iter().find(|view| view.name() == text).ok_or_else(|| right(text, &known))
 }
 
 fn offset(text: &str) -> Result<Offset, String> {

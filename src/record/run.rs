@@ -47,6 +47,10 @@ pub(crate) struct RunRecord {
     pub compiler: String,
     /// Flags that change the code: target features, profile.
     pub flags: String,
+    /// The strategy that others are held against over many cities and views; none where there was one of each, or no
+    /// unbiased strategy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<String>,
     /// What makes the figures doubtful: a busy machine, a debug build.
     pub warnings: Vec<String>,
     /// Whether it came to its end; otherwise some rows are missing.

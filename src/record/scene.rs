@@ -50,6 +50,16 @@ pub struct SceneRecord {
     pub hash: String,
     /// Seed of its generator.
     pub seed: u64,
+    /// The name of the scene that it is a replicate of, one city or view of several; none of a scene by itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub family: Option<String>,
+    /// The view that the generator placed; none of the file's own camera.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub view: Option<String>,
+    /// Which points the passes visited, "spread" or "bounce", where they were others than what pixels see through their
+    /// centres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visits: Option<String>,
     /// How many lights.
     pub lights: u64,
     /// Columns of the image.

@@ -252,7 +252,6 @@ impl<'a> Axis<'a> {
 }
 
 /// Values to mark along a scale, each with its place between the ends, 0 to 1, and its label.
-#[cfg(feature = "cli")]
 pub(crate) fn ticks(scale: &Scale, [low, high]: [f64; 2]) -> Vec<(f64, String)> {
     let axis = Axis { scale, low: scale.place(low), high: scale.place(high), from: 0, to: WIDTH };
     let place = |value: f64| (scale.place(value) - axis.low) / (axis.high - axis.low);

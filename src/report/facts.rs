@@ -10,8 +10,9 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
     let SceneRecord { width, height, reference, .. } = scene;
     let share = |part: f64| percent(part, 1.0);
     let [red, green, blue] = scene.rel_mse_epsilon.map(short);
+    let view = scene.view.as_ref().map(|view| format!(", view {view}")).unwrap_or_default();
     let mut facts = vec![
-        format!("{} (hash {}, seed {}), {} lights", scene.file, scene.hash, scene.seed, grouped(scene.lights)),
+        format!("{} (hash {}, seed {}{view}), {} lights", scene.file, scene.hash, scene.seed, grouped(scene.lights)),
         format!(
             "{width} x {height} pixels: {} receivers, sky {} %, emitters {} %",
             grouped(scene.receivers),
@@ -19,6 +20,14 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
             share(scene.emitter_share),
         ),
     ];
+    facts.extend(scene.visits.as_deref().map(|visits| match visits {
+        "bounce" => "receivers: in each pass what a ray meets that bounces off what another point of the pixel sees; each is \
+                     arrived at once, and errors are of the choice of lights alone"
+            .to_owned(),
+        _ => "receivers: in each pass what another point of the pixel sees; each is arrived at once, and errors are of the \
+              choice of lights alone"
+            .to_owned(),
+    }));
     if scene.pixels_measured < scene.receivers {
         facts.push(format!(
             "errors are taken at {} of the receivers, the same for all: a reference for more would take more work than its \

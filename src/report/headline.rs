@@ -120,12 +120,7 @@ fn unless_floor(summary: &Summary, shown: Estimate) -> Estimate {
 
 /// The ranks that it may have, and its letters.
 fn rank(summary: &Summary) -> Estimate {
-    let figure = match summary.rank {
-        Some([first, last]) if first == last => first.to_string(),
-        Some([first, last]) => format!("{first}-{last}"),
-        None => NONE.to_owned(),
-    };
-    Estimate { figure, interval: summary.letters.clone() }
+    Estimate::rank(summary.rank, &summary.letters)
 }
 
 fn claim(summary: &Summary) -> &'static str {

@@ -13,6 +13,8 @@ mod number;
 mod order;
 mod page;
 mod plot;
+mod ratios;
+pub(crate) mod replicates;
 mod rows;
 mod sheet;
 pub(crate) mod splice;
@@ -37,6 +39,7 @@ use crate::base::file::write_whole;
 use crate::record::study::Study;
 use crate::record::study_store::{is_study, read_study};
 use crate::record::{ResultFolder, Row, RunRecord, store};
+use replicates::families;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -44,13 +47,14 @@ use std::path::{Path, PathBuf};
 /// A derived file: its name within the result folder and its content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Derived {
-    /// `<scene>.md`, `<scene>.svg` or `<scene>-<parameter>.svg`, `<study>.md` or `<study>-<plot>.svg`.
+    /// `<scene>.md`, `<scene>.svg` or `<scene>-<parameter>.svg`, `replicates-<family>.md` or `.svg`, `<study>.md` or
+    /// `<study>-<plot>.svg`.
     pub name: String,
     /// All of it.
     pub text: String,
 }
 
-/// The pages and plots of all scenes, in their order.
+/// The pages and plots of all scenes, in their order, then those of families of replicates.
 ///
 /// # Errors
 /// Two pages or plots that would be written to one file; a plot that cannot be drawn.
@@ -83,6 +87,15 @@ pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
         files.push(Derived { text: plot(scene)?, name: plot_name });
         files.extend(swept);
     }
+    for family in families(run) {
+        let [page, plot] = family.files();
+        let own = [Derived { text: family.page(run), name: page }, Derived { text: family.plot()?, name: plot }];
+        if let Some(twice) = own.iter().find(|file| files.iter().any(|other| other.name == file.name)) {
+            let text = format!("two files would both be written to `{}`: rename a scene", twice.name);
+            return Err(Error::Invalid(text));
+        }
+        files.extend(own);
+    }
     Ok(files)
 }
 
@@ -99,13 +112,14 @@ pub(crate) fn derive_study(record: &Study) -> Result<Vec<Derived>> {
 /// A named section for a page that people write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Section {
-    /// The scene's name, or the study's after "study ".
+    /// The scene's name, that of a family of replicates after "replicates ", or the study's after "study ".
     pub name: String,
     /// Its Markdown.
     pub body: String,
 }
 
-/// The sections of a result folder for `page`, in order: one a scene, or one for all of a study. What they point to is
+/// The sections of a result folder for `page`, in order: one a scene, but one for all replicates of a family; or one for
+/// all of a study. What they point to is
 /// named relative to the page's folder where it lies in there.
 ///
 /// # Errors
@@ -118,11 +132,18 @@ pub(crate) fn sections(folder: &Path, page: &Path) -> Result<Vec<Section>> {
         return Ok(vec![Section { body: study::section(&record, &seen.join("").display().to_string()), name }]);
     }
     let (run, rows) = (store::read_run(folder)?, store::read_rows(folder)?.rows);
-    let sections = run.scenes.iter().map(|scene| {
-        let plot = seen.join(format!("{}.svg", store::file_name(&scene.name))).display().to_string();
+    let families = families(&run);
+    let plot_of = |file: &str| seen.join(file).display().to_string();
+    let by_itself = run.scenes.iter().filter(|scene| !families.iter().any(|family| family.holds(scene)));
+    let of_scenes = by_itself.map(|scene| {
+        let plot = plot_of(&format!("{}.svg", store::file_name(&scene.name)));
         Section { name: markdown::comment(&scene.name), body: section(&run, scene, &rows, &plot) }
     });
-    Ok(sections.collect())
+    let of_families = families.iter().map(|family| Section {
+        name: markdown::comment(&format!("replicates {}", family.name)),
+        body: family.section(&run, &plot_of(&family.files()[1])),
+    });
+    Ok(of_scenes.chain(of_families).collect())
 }
 
 /// Writes the pages and plots of a result folder again, from its raw records and rows; gives their paths.

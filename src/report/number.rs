@@ -112,6 +112,16 @@ impl Estimate {
         Self { figure: format!("{shown:+.decimals$}"), interval: either_side(off, "") }
     }
 
+    /// Ranks that a row may have, first and last, and its letters.
+    pub(super) fn rank(rank: Option<[u32; 2]>, letters: &str) -> Self {
+        let figure = match rank {
+            Some([first, last]) if first == last => first.to_string(),
+            Some([first, last]) => format!("{first}-{last}"),
+            None => NONE.to_owned(),
+        };
+        Self { figure, interval: letters.to_owned() }
+    }
+
     /// With an end that the runs do not tell: the other end as a bound, or `text` of the figure where there is none.
     fn unbounded(interval: Interval, text: impl Fn(f64) -> String) -> Option<Self> {
         let Interval { mean, low, high } = interval;

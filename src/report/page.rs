@@ -14,8 +14,13 @@ pub(crate) fn page(run: &RunRecord, scene: &SceneRecord, rows: &[Row], plot: &st
     for sheet in sheets(scene, rows) {
         _ = write!(text, "\n{}", sheet.markdown(2));
     }
+    text + &made_by(run)
+}
+
+/// The command and the conditions that figures came from.
+pub(super) fn made_by(run: &RunRecord) -> String {
     let machine = &run.machine;
-    _ = write!(text, "\n## Made by\n\n{}\n\n", markdown::block(&run.command));
+    let mut text = format!("\n## Made by\n\n{}\n\n", markdown::block(&run.command));
     let made = [
         format!("date: {}", run.date),
         format!("revision: {}", built(run.program.as_ref(), &run.version, &run.revision)),

@@ -208,6 +208,12 @@ impl Scene {
         }
     }
 
+    /// The scene under another name.
+    #[cfg(feature = "cli")]
+    pub(crate) fn named(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
     /// The scene's name.
     pub fn name(&self) -> &str {
         &self.name

@@ -8,6 +8,7 @@
 //! | `mutated` | whatever stands in results, vectors and cached references, it is read or refused |
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
+//! | `replicates` | many cities and views of a recipe are scenes of one comparison, and say something together |
 //! | `export` | exports are written whole or not at all |
 //! | `diff_image` | two pictures are compared by the figures that papers print |
 //! | `stability` | a file of exact values is met, or refused with line and column |
@@ -32,5 +33,6 @@ mod measurable;
 mod mutated;
 mod peers;
 mod processes;
+mod replicates;
 mod said;
 mod stability;

@@ -195,7 +195,7 @@ fn oracle() -> Summary {
     }
 }
 
-fn record() -> (RunRecord, Vec<Row>) {
+pub(super) fn record() -> (RunRecord, Vec<Row>) {
     let mut rows: Vec<Row> = makers().iter().flat_map(Maker::rows).collect();
     let failure = "a light that contributes is never chosen: light 17, p = 0.0001".to_owned();
     rows.push(Row::failed("village".to_owned(), "broken".to_owned(), 0, 1, failure.clone()));
@@ -214,6 +214,8 @@ fn record() -> (RunRecord, Vec<Row>) {
         file: "scenes/village.toml".to_owned(),
         hash: "9f86d081".to_owned(),
         seed: 7,
+        family: None,
+        view: None,
         lights: 12_345,
         width: 320,
         height: 180,
@@ -251,6 +253,7 @@ fn record() -> (RunRecord, Vec<Row>) {
         machine: Machine { cpu: "A Processor 3000".to_owned(), cores: 2, os: "Linux 6.1".to_owned() },
         compiler: "rustc 1.95.0".to_owned(),
         flags: "release, x86-64-v2".to_owned(),
+        base: None,
         warnings: vec!["the load average was 3.1 on 2 cores".to_owned()],
         finished: true,
         scenes: vec![scene],

@@ -45,6 +45,7 @@ fn record() -> RunRecord {
         machine: Machine { cpu: "a processor".to_owned(), cores: 2, os: "an OS".to_owned() },
         compiler: "rustc 1.95.0".to_owned(),
         flags: "release, x86-64".to_owned(),
+        base: None,
         warnings: vec!["two other processes ran".to_owned()],
         finished: true,
         scenes: vec![SceneRecord {
@@ -52,6 +53,8 @@ fn record() -> RunRecord {
             file: "scenes/village.toml".to_owned(),
             hash: "abcd".to_owned(),
             seed: 7,
+            family: None,
+            view: None,
             lights: 1000,
             width: 320,
             height: 180,

@@ -6,6 +6,7 @@
 //! | `recipe` | every mistake in a recipe is told with file, line, field and what would be right |
 //! | `generator` | equal bytes everywhere, exact counts, the degeneracies and gaps of real cities |
 //! | `scenes` | the shipped scenes are what the README and their comments say |
+//! | `views` | the views that the generator places see the city, and others than a city's are refused |
 //! | `gltf` | every triangle and every light in its place, as bright as the file says |
 //! | `gltf_files` | a glTF file goes wherever a scene goes, and what is not used of it is told |
 //! | `gltf_bad` | whatever a document says wrong is told with its path |
@@ -46,3 +47,4 @@ mod large_gltf;
 mod mutated_inputs;
 mod recipe;
 mod scenes;
+mod views;

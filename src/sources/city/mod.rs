@@ -8,6 +8,7 @@
 //! The same plan and seed give the same bytes on any number of threads: each street, block and building draws from a
 //! stream of its own and results are joined in order. Positions are multiples of 2^-10 m and intensities of 10^-4,
 //! because the last bit of `ln`, `exp` and `sin` differs between platforms.
+//! Where many cities are looked at, a [`View`] says from where, without a word about any of them.
 //! Arrays keep the degeneracies of real ones: lamps exactly collinear, window grids exactly coplanar with equal
 //! powers, signs back to back.
 
@@ -30,6 +31,7 @@ mod signs;
 mod solid;
 mod tag;
 mod traffic;
+mod views;
 mod windows;
 
 #[cfg(feature = "recipe")]
@@ -38,6 +40,8 @@ pub use generate::{Grown, generate};
 #[cfg(feature = "recipe")]
 pub(crate) use materials::builtin_materials;
 pub use solid::Solid;
+#[cfg(feature = "recipe")]
+pub(crate) use views::{Standpoint, stand};
 
 pub use beacons::Beacons;
 pub use buildings::Buildings;
@@ -49,4 +53,5 @@ pub use plan::City;
 pub use shops::Shops;
 pub use signs::Signs;
 pub use traffic::Traffic;
+pub use views::View;
 pub use windows::Windows;

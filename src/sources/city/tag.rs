@@ -14,4 +14,5 @@ pub(super) enum Tag {
     Signs,
     Traffic,
     Floodlights,
+    Views,
 }

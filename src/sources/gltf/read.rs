@@ -31,7 +31,7 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
 ///
 /// # Errors
 /// A mistake, or what is not read here, with its field; a buffer beside the file that cannot be read; an override of
-/// the seed or the lights, or of the camera by a name that none bears.
+/// the seed, the lights or the view, or of the camera by a name that none bears.
 pub fn parse(bytes: &[u8], file: &Path, overrides: &Overrides) -> Result<Scene> {
     let source = Source(file);
     if overrides.seed.is_some() {
@@ -41,6 +41,10 @@ pub fn parse(bytes: &[u8], file: &Path, overrides: &Overrides) -> Result<Scene> 
         return Err(
             source.wrong("city", "is missing; a generated city, whose number of lights is to be changed, is asked for")
         );
+    }
+    if let Some(view) = overrides.view {
+        let text = "is missing; views (street, roof, sky) are placed in a recipe's generated city, and a glTF file has cameras";
+        return Err(source.wrong("city", format_args!("{text}: `{}` cannot be given", view.name())));
     }
     let divided_by = overrides.lamps_divided_by.unwrap_or(1.0);
     if !(divided_by > 0.0 && divided_by.is_finite()) {

@@ -3,12 +3,25 @@
 use super::toml_table::Table;
 use crate::base::error::{Error, Result};
 use crate::scene::camera::Camera;
+use crate::sources::city::Standpoint;
 use crate::sources::limits::FARTHEST;
 use glam::{DVec2, DVec3};
 
-/// Reads the camera; `shift` is where the scene's origin lies.
-pub(super) fn read(table: &Table, eye: DVec3, shift: DVec3, resolution: Option<(u32, u32)>) -> Result<Camera> {
-    let target = table.needed_vector("target", FARTHEST)? - shift;
+/// Where the camera stands and what it looks at, as the table says.
+pub(super) fn standpoint(table: &Table) -> Result<Standpoint> {
+    table.only(&["position", "target", "fov", "resolution"])?;
+    let eye = table.needed_vector("position", FARTHEST)?;
+    Ok(Standpoint { eye, target: table.needed_vector("target", FARTHEST)? })
+}
+
+/// Reads the camera at a standpoint; `shift` is where the scene's origin lies.
+pub(super) fn read(
+    table: &Table,
+    standpoint: Standpoint,
+    shift: DVec3,
+    resolution: Option<(u32, u32)>,
+) -> Result<Camera> {
+    let (eye, target) = (standpoint.eye - shift, standpoint.target - shift);
     let fov = table.number("fov", 1.0..=170.0, "degrees")?.unwrap_or(60.0);
     let given = table.pair("resolution", 1.0..=16_384.0, "pixels")?.unwrap_or(DVec2::new(240.0, 135.0));
     if given.fract() != DVec2::ZERO {

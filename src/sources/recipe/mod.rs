@@ -26,6 +26,9 @@
 //! | `"directional"` | `towards`, a vector to the light | `irradiance` in lx on a surface that faces it |
 //! | `"triangle"` | `corners`, counter-clockwise from the side that emits | `radiance` in cd/m^2 |
 //!
+//! A caller may ask for a view of the city ([`Overrides::view`](crate::sources::Overrides::view)): its generator then places the
+//! camera, and of `[camera]` only `fov` and `resolution` count.
+//!
 //! The value times `colour` (white) gives the three channels; with `kelvin` it is the luminous value of a black body.
 
 mod camera;

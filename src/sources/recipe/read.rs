@@ -6,8 +6,8 @@ use super::toml_table::{Source, Table};
 use super::{camera, lights, strings};
 use crate::base::error::{Error, Result};
 use crate::scene::{LightGroup, Parts, Scene};
-use crate::sources::city::{self, City, Grown};
-use crate::sources::limits::{FARTHEST, FARTHEST_ORIGIN};
+use crate::sources::city::{self, City, Grown, Standpoint};
+use crate::sources::limits::FARTHEST_ORIGIN;
 use crate::sources::name;
 use crate::sources::overrides::Overrides;
 use glam::DVec3;
@@ -56,7 +56,8 @@ pub fn load(path: &Path, overrides: &Overrides) -> Result<Scene> {
 /// The scene of a recipe's text; `file` is the name that errors give.
 ///
 /// # Errors
-/// A recipe with a mistake, with its line and field; an override of the camera, or of the lights where no city is.
+/// A recipe with a mistake, with its line and field; an override of the camera, or of the lights or the view where no city
+/// is.
 pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     let source = Source::new(file, text);
     if text.trim().is_empty() {
@@ -81,9 +82,14 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     let ev100 = top.number("ev100", -30.0..=40.0, "EV at ISO 100")?.map(|ev| ev as f32);
     let frame = top.vector("origin", FARTHEST_ORIGIN)?.unwrap_or(DVec3::ZERO);
 
-    let grown = top.table("city")?.map(|table| grow(&table, seed, overrides.lights)).transpose()?;
+    let (grown, viewed) = top.table("city")?.map(|table| grow(&table, seed, overrides)).transpose()?.unzip();
     if grown.is_none() && overrides.lights.is_some() {
         return Err(top.missing("city", "a generated city, whose number of lights is to be changed,"));
+    }
+    if let Some(view) = overrides.view.filter(|_| grown.is_none()) {
+        let what =
+            format!("a generated city, in which views (street, roof, sky) such as `{}` are placed,", view.name());
+        return Err(top.missing("city", &what));
     }
     let by_hand = Surfaces::read(&top, grown.as_ref())?;
     let lights = lights::read(&top)?;
@@ -92,14 +98,15 @@ pub fn parse(text: &str, file: &Path, overrides: &Overrides) -> Result<Scene> {
     // A city lies about the frame's origin. What is placed by hand may lie anywhere: f32 has 0.1 mm at 1 km.
     let shift = if grown.is_some() { DVec3::ZERO } else { (by_hand.centre() / 1000.0).round() * 1000.0 };
     let camera_table = top.needed_table("camera")?;
-    camera_table.only(&["position", "target", "fov", "resolution"])?;
-    let eye = camera_table.needed_vector("position", FARTHEST)?;
+    let own = camera::standpoint(&camera_table)?;
+    let standpoint = viewed.flatten().unwrap_or(own);
+    let eye = standpoint.eye;
     by_hand.keep_out(&camera_table, eye)?;
-    let camera = camera::read(&camera_table, eye - shift, shift, overrides.resolution)?;
+    let camera = camera::read(&camera_table, standpoint, shift, overrides.resolution)?;
 
     let grown = grown.unwrap_or_default();
     if let Some(solid) = grown.solids.iter().find(|solid| solid.contains(eye.as_vec3())) {
-        return Err(inside(&camera_table, "a building of the city", *solid));
+        return Err(inside(&camera_table, &format!("a building of the city of seed {seed}"), *solid));
     }
     let Grown { lights: mut all, mut groups, surfaces: mut triangles, notes, .. } = grown;
     let (placed, materials) = by_hand.finish(shift);
@@ -148,11 +155,13 @@ fn scene_name(top: &Table) -> Result<String> {
     ))
 }
 
-fn grow(table: &Table, seed: u64, lights: Option<u64>) -> Result<Grown> {
+/// The city of a table, and where the view stands that is asked for.
+fn grow(table: &Table, seed: u64, overrides: &Overrides) -> Result<(Grown, Option<Standpoint>)> {
     let mut plan = City::default();
     table.fill(&mut plan)?;
-    plan.lights = lights.unwrap_or(plan.lights);
-    city::generate(&plan, seed).map_err(|error| match error {
+    plan.lights = overrides.lights.unwrap_or(plan.lights);
+    let view = overrides.view.map(|view| city::stand(&plan, seed, view)).transpose();
+    view.and_then(|view| Ok((city::generate(&plan, seed)?, view))).map_err(|error| match error {
         // The plan was read from this file: say where.
         Error::Parameter { owner, name, value, expected } => {
             table.at_path(&format!("{owner}.{name}"), format!("{value} is given or assumed; {expected}"))
