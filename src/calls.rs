@@ -72,6 +72,7 @@ pub fn compare(strategies: &[Configured], scene: Scene, folder: &Path) -> Result
     let engine = Engine { clock: &clock, workers: 2, seed: 1 };
     let films = ImageStore::of(folder, name);
     let options = ComparisonOptions {
+        scenes: 1,
         typed: &format!("citylights verify {name}"),
         strategies,
         budget: Budget::up_to(64, 1.0),

@@ -105,7 +105,8 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
         let scenes = arguments.replicates.entries(&arguments.scenes, &arguments.scene_options)?;
-        let asked = Asked { home, arguments, strategies: &strategies, peers: &peers, threads };
+        let count = scenes.len();
+        let asked = Asked { home, arguments, strategies: &strategies, peers: &peers, threads, scenes: count };
         let record = RunRecord { base, ..record(&asked, &scenes) };
         if threads > environment::cores() {
             say(&format!(
@@ -135,6 +136,8 @@ struct Asked<'a> {
     strategies: &'a [Configured],
     peers: &'a [Peer],
     threads: u32,
+    /// How many scenes are compared.
+    scenes: usize,
 }
 
 /// A result folder being filled.
@@ -177,7 +180,7 @@ impl Session {
     }
 
     fn scene(&mut self, stage: &Stage, entry: &Entry, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
-        let Asked { home, arguments, strategies, peers, threads } = *asked;
+        let Asked { home, arguments, strategies, peers, threads, scenes } = *asked;
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = ComparisonOptions {
@@ -192,6 +195,7 @@ impl Session {
                 }
             ),
             strategies,
+            scenes,
             budget: Budget {
                 usual_passes: arguments.budget.unwrap_or(64),
                 most_passes: arguments.budget.unwrap_or(1 << 20),

@@ -163,14 +163,14 @@ fn accuracy(options: &ComparisonOptions<'_>, pilots: &[Option<Trial>], ladders: 
     best.fold(1e-2, f64::min).max(1e-8) / 150.0
 }
 
-/// The chance that any one of all right strategies of a scene is found biased.
+/// The chance that any one of all right strategies is found biased on any of the scenes of a comparison.
 const LEVEL: f64 = 0.01;
 
 /// Gives every unbiased row an interval of its bias that holds for all of them together; one whose interval is off 0 has
 /// failed.
 fn hold_to_claims(options: &ComparisonOptions<'_>, summaries: &mut [Summary], truth: &Truth, runs: &[Runs]) {
     let held = |s: &Summary| s.claim == Claim::Unbiased && s.error.is_none() && s.mean_bias.is_bounded();
-    let level = sidak(LEVEL, summaries.iter().filter(|s| held(s)).count());
+    let level = sidak(LEVEL, options.scenes * summaries.iter().filter(|s| held(s)).count());
     for (summary, runs) in summaries.iter_mut().zip(runs).filter(|(summary, _)| held(summary)) {
         let found = bias(truth.after(summary.passes), &runs.at(summary.passes), 1.0 - level);
         summary.simultaneous_bias = found;

@@ -16,6 +16,8 @@ pub(crate) struct ComparisonOptions<'a> {
     pub budget: Budget,
     /// Independent runs.
     pub repeats: u32,
+    /// Scenes that are compared in all: a right strategy must not fail on any of them.
+    pub scenes: usize,
     /// The user's seed.
     pub seed: u64,
     /// Who times the runs.

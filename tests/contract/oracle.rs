@@ -69,6 +69,7 @@ fn a_comparison_gives_every_choosing_row_its_multiple_of_the_oracle() {
     let films = ImageStore::of(folder.path(), "oracle");
     let engine = Engine { clock: &Alone::new(), workers: 2, seed: 1 };
     let options = ComparisonOptions {
+        scenes: 1,
         typed: "made.toml",
         strategies: &strategies,
         budget: Budget::up_to(16, 5.0),

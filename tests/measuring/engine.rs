@@ -56,6 +56,7 @@ fn compared(clock: &dyn Clock, seed: u64, workers: usize) -> (SceneRecord, Vec<R
     let engine = Engine { clock, workers, seed };
     let films = ImageStore::of(folder.path(), "engine");
     let options = ComparisonOptions {
+        scenes: 1,
         typed: "made.toml",
         strategies: &strategies,
         budget: Budget { usual_passes: 16, most_passes: 64, work_s: 0.05 },

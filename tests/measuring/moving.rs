@@ -179,7 +179,8 @@ fn errors_of_a_strategy_of_known_variance_are_that_variance() {
             .alone(|meter| {
                 let error = |run| {
                     let key = RunKey { seed: 3, run };
-                    let block = Block { stage: &stage, receivers: &target.frame, strategy: &strategy, key, passes: PASSES };
+                    let block =
+                        Block { stage: &stage, receivers: &target.frame, strategy: &strategy, key, passes: PASSES };
                     truth.errors(&target.at_places(&block.run(meter).expect("an image").image)).rel_mse
                 };
                 (0..RUNS).map(error).collect::<Vec<f64>>()

@@ -216,6 +216,7 @@ pub(super) fn record() -> (RunRecord, Vec<Row>) {
         seed: 7,
         family: None,
         view: None,
+        visits: None,
         lights: 12_345,
         width: 320,
         height: 180,

@@ -55,6 +55,7 @@ fn record() -> RunRecord {
             seed: 7,
             family: None,
             view: None,
+            visits: None,
             lights: 1000,
             width: 320,
             height: 180,

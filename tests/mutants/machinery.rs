@@ -375,6 +375,7 @@ fn a_comparison_gives_a_wrong_strategy_an_error_row_and_no_time() {
     let films = &ImageStore::of(folder, "mutants");
     let engine = &Engine { clock: &crate::promises::alone::Alone::new(), workers: 1, seed: 1 };
     let options = ComparisonOptions {
+        scenes: 1,
         typed: "citylights verify sixteen.toml",
         strategies: &strategies,
         budget,

@@ -39,14 +39,16 @@ impl<const KEEPS: bool> Strategy for Near<KEEPS> {
 
     fn build(&self, context: BuildContext<'_>) -> Result<Self::Sampler> {
         use citylights::scene::light::Kind;
-        let place = |light: &citylights::scene::light::Light| (light.kind() != Kind::Directional).then_some(light.position);
+        let place =
+            |light: &citylights::scene::light::Light| (light.kind() != Kind::Directional).then_some(light.position);
         Ok(Places(context.stage.scene().lights().iter().map(place).collect()))
     }
 }
 
 impl<const KEEPS: bool> Places<KEEPS> {
     fn weights(&self, at: &Receiver) -> Vec<f64> {
-        let weight = |place: &Option<Vec3>| place.map_or(0.05, |p| 1.0 / (1.0 + f64::from(p.distance_squared(at.position))));
+        let weight =
+            |place: &Option<Vec3>| place.map_or(0.05, |p| 1.0 / (1.0 + f64::from(p.distance_squared(at.position))));
         self.0.iter().map(weight).collect()
     }
 }
