@@ -1,12 +1,12 @@
 //! Which studies are there?
 
 use super::entry::Entry;
-use super::{cutoff, offsets, scaling, soft_shadows, strategies, visible};
+use super::{cutoff, elsewhere, offsets, scaling, soft_shadows, strategies, visible};
 use crate::base::error::{Error, Result};
 
 /// Every study, in the order of `citylights list studies`.
-pub(crate) const STUDIES: [Entry; 6] =
-    [strategies::ENTRY, visible::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
+pub(crate) const STUDIES: [Entry; 7] =
+    [strategies::ENTRY, visible::ENTRY, elsewhere::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
 
 /// The study of that name.
 ///

@@ -8,7 +8,7 @@
 //! | which studies are there? | [`STUDIES`], [`find`] |
 //! | what is a study, and how is it run? | [`Entry`] |
 //! | what may a user change of it? | [`StudyOptions`] |
-//! | how is its question answered? | `strategies`, `visible`, `cutoff`, `scaling`, `soft_shadows`, `offsets` |
+//! | how is its question answered? | `strategies`, `visible`, `elsewhere`, `cutoff`, `scaling`, `soft_shadows`, `offsets` |
 //! | what does it have while it runs? | `session` |
 //! | how good is each strategy within a budget? | [`trial`] |
 //! | how good is a choice of lights, before any ray is cast? | [`quality`] |
@@ -23,6 +23,7 @@ mod area;
 mod cells;
 mod columns;
 mod cutoff;
+mod elsewhere;
 mod entry;
 pub(crate) mod fit;
 mod list;

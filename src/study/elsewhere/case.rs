@@ -1,0 +1,99 @@
+//! Which condition, size, city and view is a case?
+
+use super::super::session::Session;
+use super::{CITIES, PASSES};
+use crate::base::error::Result;
+use crate::measure::reference::{Reference, Wanted};
+use crate::measure::target::Target;
+use crate::measure::tune;
+use crate::scene::Scene;
+use crate::sources::city::View;
+use crate::sources::{self, Overrides};
+use crate::visibility::offset::Offset;
+use crate::visibility::stage::{LeaveOut, Stage};
+use crate::visibility::visits::Receivers;
+use std::path::Path;
+
+/// Receivers of a frame that errors are taken at.
+const PIXELS: usize = 512;
+/// Pixels across and down where nobody says otherwise.
+const RESOLUTION: (u32, u32) = (120, 68);
+/// Most counted work of a case's reference, in nominal seconds, and its own relMSE where that allows.
+const REFERENCE_S: f64 = 24.0;
+const OWN_REL_MSE: f64 = 1e-5;
+
+/// All cases of a study.
+#[derive(Clone, Copy)]
+pub(super) struct Cases<'a> {
+    pub(super) session: &'a Session<'a>,
+    pub(super) recipe: &'a Path,
+    /// Nominal seconds of a run, set-up in.
+    pub(super) time_s: f64,
+    /// Independent runs of a strategy in a case.
+    pub(super) runs: u32,
+}
+
+/// The cases of one condition and size.
+#[derive(Clone, Copy)]
+pub(super) struct Size<'a> {
+    pub(super) cases: Cases<'a>,
+    pub(super) receivers: Receivers,
+    pub(super) lights: u64,
+}
+
+impl<'a> Cases<'a> {
+    /// A small city from every view.
+    pub(super) fn first(&self, lights: u64) -> Result<Vec<Scene>> {
+        View::ALL.into_iter().map(|view| self.open(lights, self.session.options.overrides.seed, view)).collect()
+    }
+
+    pub(super) fn size(self, receivers: Receivers, lights: u64) -> Size<'a> {
+        Size { cases: self, receivers, lights }
+    }
+
+    fn open(&self, lights: u64, seed: Option<u64>, view: View) -> Result<Scene> {
+        let own = &self.session.options.overrides;
+        let resolution = own.resolution.or(Some(RESOLUTION));
+        sources::open(self.recipe, &Overrides { lights: Some(lights), seed, view: Some(view), resolution, ..own.clone() })
+    }
+}
+
+/// The view of the n-th city: all are taken in turn.
+pub(super) fn view(city: usize) -> View {
+    View::ALL[city % View::ALL.len()]
+}
+
+impl Size<'_> {
+    /// The n-th city that is reported.
+    pub(super) fn reported(&self, city: usize) -> Result<Stage> {
+        let first = self.cases.open(self.lights, self.cases.session.options.overrides.seed, view(city))?;
+        self.stage(if city == 0 { first } else { self.of_seed(first.seed() + city as u64, city)? })
+    }
+
+    /// Seeds of the cities that parameters are found on: none that is reported.
+    pub(super) fn others(&self) -> Result<Vec<u64>> {
+        let first = self.cases.open(self.lights, self.cases.session.options.overrides.seed, view(0))?;
+        Ok(tune::seeds(first.seed(), CITIES))
+    }
+
+    /// A city of a seed, seen as the n-th.
+    pub(super) fn other(&self, seed: u64, city: usize) -> Result<Stage> {
+        self.stage(self.of_seed(seed, city)?)
+    }
+
+    fn of_seed(&self, seed: u64, city: usize) -> Result<Scene> {
+        self.cases.open(self.lights, Some(seed), view(city))
+    }
+
+    fn stage(&self, scene: Scene) -> Result<Stage> {
+        Ok(Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, self.receivers))
+    }
+
+    /// What is measured of a stage, and what is true there.
+    pub(super) fn target<'s>(&self, stage: &'s Stage) -> Result<(Target<'s>, Reference)> {
+        let session = self.cases.session;
+        let target = Target::whole(stage).thinned(session.pixels(PIXELS)).after(PASSES);
+        let wanted = Wanted { work_s: REFERENCE_S, ..Wanted::new(OWN_REL_MSE) };
+        Reference::bounded(&target, wanted, &session.options.cache, session.watch)
+    }
+}

@@ -1,0 +1,188 @@
+//! What stands in the tables of `study elsewhere`?
+
+use super::super::columns::{column, interval};
+use super::case::Cases;
+use super::together::base;
+use super::{CITIES, PASSES};
+use crate::record::study::{ColumnRecord, Format, TableRecord};
+use crate::strategy::Configured;
+use crate::visibility::visits::Receivers;
+
+/// The conditions, in the order of the tables.
+pub(super) const CONDITIONS: [&str; 3] = [Receivers::NAMED[0].0, Receivers::NAMED[1].0, Receivers::NAMED[2].0];
+/// Which parameters a row is measured at; a summary table is named by each.
+pub(super) const KINDS: [&str; 2] = ["best", "default"];
+/// What `visible` is held against.
+pub(super) const OTHERS: [&str; 3] = ["light-tree", "stochastic-cull", "intensity"];
+
+/// All tables: what all cases say together first.
+pub(super) fn all(cases: &Cases<'_>, grids: &[Vec<Configured>]) -> Vec<TableRecord> {
+    let base = grids[base(grids)][0].name();
+    vec![
+        summary("best", &format!("each strategy at its best: V over that of {base}"), base),
+        summary("default", &format!("each strategy at its defaults: V over that of {base}"), base),
+        over(),
+        loss(),
+        tuned(),
+        grid(),
+        measured(cases),
+    ]
+}
+
+fn group() -> [ColumnRecord; 2] {
+    [column("receivers", "receivers", Format::Name), column("lights", "lights", Format::Whole)]
+}
+
+fn summary(name: &str, title: &str, base: &str) -> TableRecord {
+    let mut columns = vec![column("strategy", "strategy", Format::Name)];
+    for receivers in CONDITIONS.iter().chain(&["all"]) {
+        columns.extend(interval(&format!("ratio_{receivers}"), receivers, Format::Number));
+    }
+    columns.extend([
+        column("rank", "rank,\nletters", Format::Words),
+        column("least", "least", Format::Number),
+        column("greatest", "greatest", Format::Number),
+        column("worst_case", "worst case", Format::Words),
+        column("cases", "cases", Format::Whole),
+    ]);
+    let parameters = if name == "best" {
+        "Parameters are those of the table of tuning: found in counted work for each condition and size, on cities of other \
+         seeds than those that are reported."
+    } else {
+        "Parameters are the defaults: nobody has tuned anything, and an order can turn round where somebody does."
+    };
+    TableRecord {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        columns,
+        notes: vec![
+            format!(
+                "V is the mean relMSE times the mean CPU seconds of a run, set-up and every arrival in; {base} has 1 in \
+                 every case. Less is better."
+            ),
+            format!(
+                "geometric means over the cases of a condition ({CITIES} cities of each size, seen from a street, a roof and \
+                 the sky in turn), with 95 % intervals by Student's t on the logarithms; a rank of 2-4 may be any of these, and \
+                 rows that share a letter are not told apart (paired t tests over all cases, Holm, 5 % in all)."
+            ),
+            parameters.to_owned(),
+            "without a rank: not measured in every case, as where a pass takes too long.".to_owned(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+fn over() -> TableRecord {
+    let mut columns =
+        vec![column("receivers", "receivers", Format::Name), column("lights", "lights", Format::Words)];
+    for other in OTHERS {
+        for kind in KINDS {
+            let name = format!("over_{}_{kind}", other.replace('-', "_"));
+            columns.extend(interval(&name, &format!("over {other},\n{kind}"), Format::Number));
+        }
+    }
+    TableRecord {
+        name: "over".to_owned(),
+        title: "V of visible over that of another strategy".to_owned(),
+        columns,
+        notes: vec![
+            "both at their best, and both at their defaults; below 1 where `visible` is better. Geometric means over cities with \
+             95 % intervals over them."
+                .to_owned(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+fn loss() -> TableRecord {
+    let mut columns = group().to_vec();
+    columns.extend([
+        column("strategy", "strategy", Format::Name),
+        column("elsewhere", "found on other cities", Format::Name),
+        column("there", "found on the reported ones", Format::Name),
+    ]);
+    columns.extend(interval("loss", "V over V", Format::Number));
+    TableRecord {
+        name: "loss".to_owned(),
+        title: "what parameters lose in cities that they were not found in".to_owned(),
+        columns,
+        notes: vec![
+            "V on the reported cities at the parameters that were found on the others, over V there at those that were found \
+             on the reported ones, in counted work. Runs that choose are none of those that score. Nothing else in this study \
+             rests on parameters that were found on reported cities."
+                .to_owned(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+fn tuned() -> TableRecord {
+    let mut columns = group().to_vec();
+    columns.extend([column("strategy", "strategy", Format::Name), column("best", "at its best", Format::Name)]);
+    columns.extend(interval("gain", "default\nover best", Format::Number));
+    columns.push(column("second", "the next", Format::Name));
+    columns.extend(interval("second_over_best", "over best", Format::Number));
+    TableRecord {
+        name: "tuned".to_owned(),
+        title: "tuning: the best parameters for each condition and size".to_owned(),
+        columns,
+        notes: vec![
+            "V in counted work at the committed rates, geometric mean over five tuning cities with an interval over them; of \
+             runs that neither was chosen by."
+                .to_owned(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+fn grid() -> TableRecord {
+    let mut columns = group().to_vec();
+    columns.extend([
+        column("strategy", "strategy", Format::Name),
+        column("point", "point of the grid", Format::Name),
+        column("passes", "passes", Format::Number),
+        column("work_s", "counted s", Format::Number),
+        column("rel_mse", "relMSE", Format::Number),
+        column("v", "V", Format::Number),
+        column("remark", "", Format::Words),
+    ]);
+    TableRecord {
+        name: "grid".to_owned(),
+        title: "every point of every grid".to_owned(),
+        columns,
+        notes: vec![
+            "geometric means over the tuning cities. A point that is much worse than the best after few runs is left, and says so."
+                .to_owned(),
+        ],
+        plots: Vec::new(),
+    }
+}
+
+fn measured(cases: &Cases<'_>) -> TableRecord {
+    let mut columns = group().to_vec();
+    columns.extend([
+        column("city", "city", Format::Whole),
+        column("seed", "seed", Format::Whole),
+        column("view", "view", Format::Name),
+        column("strategy", "strategy", Format::Name),
+        column("at", "at its", Format::Name),
+        column("parameters", "parameters", Format::Name),
+        column("passes", "passes", Format::Whole),
+        column("pixels", "pixels", Format::Whole),
+    ]);
+    columns.extend(interval("rel_mse", "relMSE", Format::Number));
+    columns.extend(interval("cpu_s", "CPU ms", Format::Milliseconds));
+    columns.extend(interval("v", "V", Format::Number));
+    columns.push(column("remark", "", Format::Words));
+    TableRecord {
+        name: "cases".to_owned(),
+        title: "every case".to_owned(),
+        columns,
+        notes: vec![format!(
+            "{} runs of the number of passes among {PASSES:?} whose counted work, set-up in, comes next to {} s; a pass that takes \
+             more than four times that is not run. CPU ms: set-up and every arrival in. relMSE at so many pixels.",
+            cases.runs, cases.time_s
+        )],
+        plots: Vec::new(),
+    }
+}

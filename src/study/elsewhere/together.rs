@@ -1,0 +1,144 @@
+//! What do all cases say together?
+//!
+//! A case is a replicate: V of a strategy over that of another in the same case is a ratio, and the spread of the ratios
+//! says how far another city, view or size may be from their mean.
+
+use super::super::cells::cells;
+use super::tables::{CONDITIONS, KINDS, OTHERS};
+use crate::base::error::Result;
+use crate::base::replicates::{Ratio, Replicates};
+use crate::record::Interval;
+use crate::record::study::{Cell, Cells, TableRecord};
+use crate::record::study_store::StudyWriter;
+use crate::strategy::Configured;
+
+/// Confidence of the intervals, and the chance that any pair of equal rows is told apart.
+const CONFIDENCE: f64 = 0.95;
+const LEVEL: f64 = 0.05;
+
+/// Fills the tables over all cases.
+pub(super) fn summarise(writer: &mut StudyWriter, grids: &[Vec<Configured>]) -> Result<()> {
+    let strategies: Vec<&str> = grids.iter().map(|grid| grid[0].name()).collect();
+    let (table, rows) = writer.table("cases");
+    let cases = Found { table, rows, strategies: &strategies };
+    let summaries = KINDS.map(|kind| (kind, summary(&cases, kind)));
+    let over = over(&cases);
+    for (kind, rows) in summaries {
+        writer.put(kind, &[], rows)?;
+    }
+    writer.put("over", &[], over)
+}
+
+/// The strategy that others are held against: the light tree, or where it is not asked for the first.
+pub(super) fn base(grids: &[Vec<Configured>]) -> usize {
+    grids.iter().position(|grid| grid[0].name() == "light-tree").unwrap_or(0)
+}
+
+/// What was measured.
+struct Found<'a> {
+    table: &'a TableRecord,
+    rows: &'a [Cells],
+    strategies: &'a [&'a str],
+}
+
+/// V of each strategy in some cases, and which cases these are.
+struct Chosen {
+    replicates: Replicates,
+    cases: Vec<String>,
+}
+
+impl Found<'_> {
+    fn cell<'r>(&self, row: &'r Cells, column: &str) -> &'r Cell {
+        &row[self.table.column(column).expect("a column of this study")]
+    }
+
+    /// Of one kind of parameters, in the cases that are `wanted`.
+    fn of(&self, kind: &str, wanted: impl Fn(&Cells) -> bool) -> Chosen {
+        let text = |cell: &Cell| match cell {
+            Cell::Text(text) => text.clone(),
+            Cell::Whole(count) => count.to_string(),
+            Cell::Missing | Cell::Number(_) => String::new(),
+        };
+        let name = |row: &Cells| {
+            let part = |column| text(self.cell(row, column));
+            format!("{}, {} lights, city {}, {}", part("receivers"), part("lights"), part("seed"), part("view"))
+        };
+        let mine = || self.rows.iter().filter(|row| *self.cell(row, "at") == Cell::from(kind) && wanted(row));
+        let mut cases: Vec<String> = Vec::new();
+        for case in mine().map(name) {
+            if !cases.contains(&case) {
+                cases.push(case);
+            }
+        }
+        let figure = |strategy: &str, case: &String| {
+            let row = mine().find(|row| *self.cell(row, "strategy") == Cell::from(strategy) && name(row) == *case)?;
+            self.cell(row, "v").number()
+        };
+        let of = |strategy: &&str| cases.iter().map(|case| figure(strategy, case)).collect();
+        Chosen { replicates: Replicates::of(self.strategies.iter().map(of).collect()), cases }
+    }
+}
+
+/// A row a strategy, best first: its ratio to the base under each condition and under all, its place and its worst case.
+fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
+    let base = found.strategies.iter().position(|name| *name == "light-tree").unwrap_or(0);
+    let by_condition = CONDITIONS.map(|receivers| found.of(kind, |row| *found.cell(row, "receivers") == Cell::from(receivers)));
+    let all = found.of(kind, |_| true);
+    let places = all.replicates.places(LEVEL);
+    let ratio = |of: &Chosen, strategy| of.replicates.over(strategy, base, CONFIDENCE);
+    let mut order: Vec<usize> = (0..found.strategies.len()).collect();
+    let mean = |strategy: usize| ratio(&all, strategy).map_or(f64::INFINITY, |ratio| ratio.mean);
+    let missing = |strategy: usize| all.cases.len() - all.replicates.measured(strategy);
+    order.sort_by(|&a, &b| (missing(a) > 0).cmp(&(missing(b) > 0)).then(mean(a).total_cmp(&mean(b))));
+    let row = |strategy: usize| {
+        let mut row: Cells = vec![found.strategies[strategy].into()];
+        row.extend(by_condition.iter().flat_map(|of| interval(ratio(of, strategy))));
+        let whole = ratio(&all, strategy);
+        row.extend(interval(whole));
+        let place = places[strategy].as_ref();
+        let rank = place.map(|place| match place.rank {
+            [first, last] if first == last => format!("{first} {}", place.letters),
+            [first, last] => format!("{first}-{last} {}", place.letters),
+        });
+        row.push(rank.as_deref().into());
+        row.extend([whole.map(|ratio| ratio.least.0).into(), whole.map(|ratio| ratio.greatest.0).into()]);
+        let worst = whole.filter(|_| strategy != base).map(|ratio| all.cases[ratio.greatest.1].as_str());
+        row.push(worst.into());
+        row.push((all.replicates.measured(strategy) as u64).into());
+        row
+    };
+    order.into_iter().map(row).collect()
+}
+
+/// The flagship over its rivals, by condition and size: at defaults and at bests.
+fn over(found: &Found<'_>) -> Vec<Cells> {
+    let place = |name: &str| found.strategies.iter().position(|known| *known == name);
+    let Some(own) = place("visible") else { return Vec::new() };
+    let mut sizes: Vec<u64> = found.rows.iter().filter_map(|row| found.cell(row, "lights").number()).map(|n| n as u64).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let mut rows = Vec::new();
+    for receivers in CONDITIONS {
+        for lights in sizes.iter().copied().map(Some).chain([None]) {
+            let wanted = |row: &Cells| {
+                *found.cell(row, "receivers") == Cell::from(receivers)
+                    && lights.is_none_or(|lights| *found.cell(row, "lights") == Cell::from(lights))
+            };
+            let lights = lights.map_or_else(|| "all".to_owned(), |lights| lights.to_string());
+            let mut row: Cells = vec![receivers.into(), lights.as_str().into()];
+            let kinds = KINDS.map(|kind| found.of(kind, wanted));
+            for other in OTHERS {
+                for of in &kinds {
+                    let ratio = place(other).and_then(|other| of.replicates.over(own, other, CONFIDENCE));
+                    row.extend(interval(ratio));
+                }
+            }
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+fn interval(ratio: Option<Ratio>) -> [Cell; 3] {
+    cells(ratio.map(|Ratio { mean, low, high, .. }| Interval { mean, low, high }))
+}
