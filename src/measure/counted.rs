@@ -25,6 +25,9 @@ pub(crate) struct Work {
     pub counts: Counts,
 }
 
+/// How many times dearer than it is a strategy may seem at some squares of the frame. Seen: `visible` 1.9 times.
+const SEEMING: f64 = 3.0;
+
 /// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
 const SQUARES: usize = 16;
 
@@ -72,11 +75,29 @@ impl Work {
         self.setup_s + self.arrive_s + f64::from(passes) * self.pass_s
     }
 
-    /// The number of passes whose nominal seconds come next to `seconds`: one at least, and `most` at most.
-    pub(crate) fn passes_next_to(&self, seconds: f64, most: u32) -> u32 {
-        let passes = (seconds - self.setup_s - self.arrive_s) / self.pass_s;
-        // Of a pass that takes nothing there may be any number.
-        (passes.round().min(f64::from(most)) as u32).max(1)
+    /// Counted over so many passes of a target's whole frame, if the first takes no more than so many nominal seconds, set-up
+    /// in; what it takes if it takes more.
+    pub(crate) fn affordable(
+        target: &Target<'_>,
+        sampler: &dyn AnySampler,
+        key: RunKey,
+        passes: u32,
+        most_s: f64,
+    ) -> Result<Self, f64> {
+        let within = |work: Self, times: f64| {
+            let first_s = work.seconds(1);
+            if first_s > times * most_s { Err(first_s) } else { Ok(work) }
+        };
+        // Counting a whole frame of what takes a hundred times that would take as long.
+        within(Self::at_squares(target, sampler, key, passes), SEEMING)?;
+        within(Self::of_frame(target, sampler, key, passes), 1.0)
+    }
+
+    /// The number of passes whose nominal seconds come next to `seconds`, among those allowed: ascending, at least one.
+    pub(crate) fn passes_next_to(&self, seconds: f64, allowed: &[u32]) -> u32 {
+        let off = |passes: u32| (self.seconds(passes) - seconds).abs();
+        // Of equals the most: what takes nothing may do as much as it can.
+        allowed.iter().copied().rev().min_by(|&a, &b| off(a).total_cmp(&off(b))).expect("a number of passes")
     }
 }
 
@@ -87,11 +108,13 @@ mod tests {
     #[test]
     fn passes_come_next_to_a_time_from_either_side() {
         let work = Work { setup_s: 0.01, arrive_s: 0.09, pass_s: 0.1, counts: Counts::default() };
+        let every: Vec<u32> = (1..=64).collect();
         for (seconds, passes) in [(0.0, 1), (0.24, 1), (0.26, 2), (1.14, 10), (1.16, 11), (1e9, 64)] {
-            assert_eq!(work.passes_next_to(seconds, 64), passes, "{seconds} s");
+            assert_eq!(work.passes_next_to(seconds, &every), passes, "{seconds} s");
         }
+        assert_eq!([0.3, 0.55, 0.7].map(|seconds| work.passes_next_to(seconds, &[1, 4, 8])), [1, 4, 8]);
         assert!((work.seconds(10) - 1.1).abs() < 1e-12);
         let nothing = Work { pass_s: 0.0, ..work };
-        assert_eq!([1.0, 0.0].map(|seconds| nothing.passes_next_to(seconds, 64)), [64, 1]);
+        assert_eq!(nothing.passes_next_to(1.0, &every), 64);
     }
 }

@@ -6,7 +6,7 @@
 
 pub(crate) mod clock;
 pub(crate) mod compare;
-mod counted;
+pub(crate) mod counted;
 pub(crate) mod curve;
 pub(crate) mod engine;
 pub(crate) mod errors;

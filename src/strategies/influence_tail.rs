@@ -36,7 +36,7 @@ impl Strategy for InfluenceTail {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,2,4},tail={1,4,16},cutoff={0.125}";
+    const GRID: &'static str = "picks={1,4,16},tail={1,4,16}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let picks = arguments.count("picks", 1, 1..=1024, "lights in range drawn a pass")?;

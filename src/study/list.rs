@@ -5,8 +5,15 @@ use super::{cutoff, elsewhere, offsets, scaling, soft_shadows, strategies, visib
 use crate::base::error::{Error, Result};
 
 /// Every study, in the order of `citylights list studies`.
-pub(crate) const STUDIES: [Entry; 7] =
-    [strategies::ENTRY, visible::ENTRY, elsewhere::ENTRY, cutoff::ENTRY, scaling::ENTRY, soft_shadows::ENTRY, offsets::ENTRY];
+pub(crate) const STUDIES: [Entry; 7] = [
+    strategies::ENTRY,
+    visible::ENTRY,
+    elsewhere::ENTRY,
+    cutoff::ENTRY,
+    scaling::ENTRY,
+    soft_shadows::ENTRY,
+    offsets::ENTRY,
+];
 
 /// The study of that name.
 ///

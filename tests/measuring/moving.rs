@@ -96,10 +96,11 @@ fn mean(target: &Target<'_>, passes: u32, shift: u32, at_receiver: impl Fn(&Rece
     target.places.iter().map(of).collect()
 }
 
-/// Greatest difference as a share of the mean radiance.
+/// Greatest difference as a share of the radiance there, or of the mean radiance where that is more.
 fn apart(truth: &Truth, wanted: &[DVec3]) -> f64 {
-    let scale = wanted.iter().map(|x| x.x).sum::<f64>() / wanted.len() as f64;
-    truth.mean().iter().zip(wanted).map(|(a, b)| (a.as_dvec3() - b).abs().max_element()).fold(0.0, f64::max) / scale
+    let scale = wanted.iter().copied().sum::<DVec3>() / wanted.len() as f64;
+    let off = |(a, b): (&Vec3, &DVec3)| ((a.as_dvec3() - b).abs() / b.max(scale)).max_element();
+    truth.mean().iter().zip(wanted).map(off).fold(0.0, f64::max)
 }
 
 #[test]

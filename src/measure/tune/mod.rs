@@ -1,6 +1,6 @@
 //! Which parameters of a strategy reach the least error in a given time?
 //!
-//! Every point of a grid has the number of passes whose nominal seconds, set-up in, come next to the time. Its score on a
+//! Every point of a grid has the number of passes, of those allowed, whose nominal seconds, set-up in, come next to the time. Its score on a
 //! city is V, the mean relMSE of its runs times these seconds; over cities, the geometric mean. Time is counted, not taken: the
 //! same seed finds the same parameters on every machine, with any number of threads.
 //!
@@ -48,6 +48,8 @@ pub(crate) struct Tuner<'a> {
     pub cities: &'a [City<'a>],
     /// Nominal CPU seconds of a run, set-up in.
     pub time_s: f64,
+    /// The numbers of passes that a run may have, ascending: where receivers move, those that the truth is known after.
+    pub passes: &'a [u32],
     /// Independent runs on each city that the choice rests on at its end, and the scores after it once more.
     pub runs: u32,
     /// The user's seed.
@@ -77,14 +79,8 @@ const FEWEST: u32 = 2;
 /// A point is too dear where its first image takes more than so many times the time.
 const DEAREST: f64 = 4.0;
 
-/// How many times dearer than it is a strategy may seem at some squares of the frame. Seen: `visible` 1.9 times.
-const SEEMING: f64 = 3.0;
-
 /// Passes that work is counted over.
 const COUNTED: u32 = 2;
-
-/// Most passes of a run: of what takes next to nothing.
-const MOST_PASSES: u32 = 1 << 16;
 
 /// Names the random numbers of the runs that no point is chosen by.
 const FRESH: u64 = u64::from_le_bytes(*b"no choic");
@@ -156,6 +152,7 @@ impl Tuner<'_> {
         let wrong = match (grid, self.cities) {
             ([], _) => "the grid has no points",
             (_, []) => "there is no city to tune on",
+            _ if self.passes.is_empty() => "no number of passes is allowed",
             _ if self.runs == 0 => "no runs are asked for",
             _ if !(self.time_s.is_finite() && self.time_s > 0.0) => "the time is no number of seconds above 0",
             _ => return Ok(()),
@@ -180,7 +177,7 @@ impl Tuner<'_> {
         })?;
         for (point, works) in points.iter_mut().zip(works) {
             if let Some(works) = works.into_iter().collect::<Option<Vec<Work>>>() {
-                point.passes = works.iter().map(|work| work.passes_next_to(self.time_s, MOST_PASSES)).collect();
+                point.passes = works.iter().map(|work| work.passes_next_to(self.time_s, self.passes)).collect();
                 point.seconds = works.iter().zip(&point.passes).map(|(work, &n)| work.seconds(n)).collect();
             }
         }
@@ -193,14 +190,10 @@ impl Tuner<'_> {
         let key = RunKey { seed: hash(&[self.seed, city as u64]), run: u32::MAX };
         let context = BuildContext { stage: target.stage, seed: key.seed };
         let sampler = strategy.build(context).map_err(|error| error.to_string())?;
-        let affordable = |work: Work, times: f64| {
-            let first = work.seconds(1);
-            let dear = format!("one pass is {first:.2} s of counted work, more than {DEAREST} times {} s", self.time_s);
-            if first > times * self.time_s { Err(dear) } else { Ok(work) }
+        let dear = |first_s| {
+            format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {} s", self.time_s)
         };
-        // Counting a whole frame of what takes a hundred times the time would take as long.
-        affordable(Work::at_squares(target, sampler.as_ref(), key, COUNTED), SEEMING * DEAREST)?;
-        affordable(Work::of_frame(target, sampler.as_ref(), key, COUNTED), DEAREST)
+        Work::affordable(target, sampler.as_ref(), key, COUNTED, DEAREST * self.time_s).map_err(dear)
     }
 
     /// So many more runs of some points on every city.

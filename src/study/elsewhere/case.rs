@@ -54,7 +54,10 @@ impl<'a> Cases<'a> {
     fn open(&self, lights: u64, seed: Option<u64>, view: View) -> Result<Scene> {
         let own = &self.session.options.overrides;
         let resolution = own.resolution.or(Some(RESOLUTION));
-        sources::open(self.recipe, &Overrides { lights: Some(lights), seed, view: Some(view), resolution, ..own.clone() })
+        sources::open(
+            self.recipe,
+            &Overrides { lights: Some(lights), seed, view: Some(view), resolution, ..own.clone() },
+        )
     }
 }
 

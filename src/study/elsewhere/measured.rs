@@ -49,12 +49,13 @@ pub(super) fn case(
             strategies.push(one);
         }
     }
+    let (time_s, seed) = (size.cases.time_s, session.options.seed);
     session.watch.begin("counting", strategies.len() as u64);
     let passes: Vec<std::result::Result<u32, String>> = strategies
         .iter()
         .map(|strategy| {
             session.watch.check()?;
-            let passes = session.engine().alone(|_| affordable(size, &target, strategy))?;
+            let passes = session.engine().alone(|_| affordable(&target, strategy, time_s, seed))?;
             session.watch.advance(1);
             Ok(passes)
         })
@@ -85,10 +86,9 @@ pub(super) fn case(
 }
 
 /// The number of passes that come next to the time, by counted work; or why there are none.
-fn affordable(size: &Size<'_>, target: &Target<'_>, strategy: &Configured) -> std::result::Result<u32, String> {
-    let time_s = size.cases.time_s;
-    let key = RunKey { seed: size.cases.session.options.seed, run: u32::MAX };
-    let context = BuildContext { stage: target.stage, seed: key.seed };
+fn affordable(target: &Target<'_>, strategy: &Configured, time_s: f64, seed: u64) -> std::result::Result<u32, String> {
+    let key = RunKey { seed, run: u32::MAX };
+    let context = BuildContext { stage: target.stage, seed };
     let sampler = strategy.build(context).map_err(|error| error.to_string())?;
     Work::affordable(target, sampler.as_ref(), key, COUNTED, DEAREST * time_s)
         .map(|work| work.passes_next_to(time_s, &PASSES))

@@ -73,8 +73,7 @@ fn summary(name: &str, title: &str, base: &str) -> TableRecord {
 }
 
 fn over() -> TableRecord {
-    let mut columns =
-        vec![column("receivers", "receivers", Format::Name), column("lights", "lights", Format::Words)];
+    let mut columns = vec![column("receivers", "receivers", Format::Name), column("lights", "lights", Format::Words)];
     for other in OTHERS {
         for kind in KINDS {
             let name = format!("over_{}_{kind}", other.replace('-', "_"));

@@ -82,7 +82,8 @@ impl Found<'_> {
 /// A row a strategy, best first: its ratio to the base under each condition and under all, its place and its worst case.
 fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
     let base = found.strategies.iter().position(|name| *name == "light-tree").unwrap_or(0);
-    let by_condition = CONDITIONS.map(|receivers| found.of(kind, |row| *found.cell(row, "receivers") == Cell::from(receivers)));
+    let by_condition =
+        CONDITIONS.map(|receivers| found.of(kind, |row| *found.cell(row, "receivers") == Cell::from(receivers)));
     let all = found.of(kind, |_| true);
     let places = all.replicates.places(LEVEL);
     let ratio = |of: &Chosen, strategy| of.replicates.over(strategy, base, CONFIDENCE);
@@ -114,7 +115,8 @@ fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
 fn over(found: &Found<'_>) -> Vec<Cells> {
     let place = |name: &str| found.strategies.iter().position(|known| *known == name);
     let Some(own) = place("visible") else { return Vec::new() };
-    let mut sizes: Vec<u64> = found.rows.iter().filter_map(|row| found.cell(row, "lights").number()).map(|n| n as u64).collect();
+    let mut sizes: Vec<u64> =
+        found.rows.iter().filter_map(|row| found.cell(row, "lights").number()).map(|n| n as u64).collect();
     sizes.sort_unstable();
     sizes.dedup();
     let mut rows = Vec::new();

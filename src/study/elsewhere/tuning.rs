@@ -25,7 +25,11 @@ pub(super) fn best(size: &Size<'_>, writer: &mut StudyWriter, grids: &[Vec<Confi
     if !writer.has("tuned", &key, grids.len()) {
         session.watch.begin("tuning cities", CITIES as u64);
         let found = on(size, grids, &|city| size.other(size.others()?[city], city))?;
-        writer.put("grid", &key, found.iter().flat_map(|one| one.points.iter().map(|point| grid_row(size, one, point))).collect())?;
+        writer.put(
+            "grid",
+            &key,
+            found.iter().flat_map(|one| one.points.iter().map(|point| grid_row(size, one, point))).collect(),
+        )?;
         writer.put("tuned", &key, found.iter().map(|one| tuned_row(size, one)).collect())?;
     }
     let (table, rows) = writer.table("tuned");
@@ -100,7 +104,11 @@ pub(super) fn loss(
 fn over_other(found: &TunedStrategy) -> Option<Interval> {
     let Interval { mean, low, high } = found.second.as_ref()?.over_best;
     let is_first = found.best.as_ref() == Some(&found.default);
-    Some(if is_first { Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low } } else { Interval { mean, low, high } })
+    Some(if is_first {
+        Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low }
+    } else {
+        Interval { mean, low, high }
+    })
 }
 
 fn tuned_row(size: &Size<'_>, found: &TunedStrategy) -> Vec<Cell> {
