@@ -25,7 +25,8 @@ pub(crate) struct Work {
     pub counts: Counts,
 }
 
-/// How many times dearer than it is a strategy may seem at some squares of the frame. Seen: `visible` 1.9 times.
+/// How many times dearer than it is a strategy may seem at some squares of the frame: room for those that share work among
+/// neighbours further apart than a square, as `visible`.
 const SEEMING: f64 = 3.0;
 
 /// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.

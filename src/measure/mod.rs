@@ -25,7 +25,6 @@ mod spread;
 pub(crate) mod summary;
 pub(crate) mod target;
 pub(crate) mod tiles;
-#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
 pub(crate) mod tune;
 #[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
 pub(crate) mod tuned;

@@ -73,7 +73,8 @@ const ROUNDS: [Round; 3] = [
 ];
 
 /// No point is left after fewer runs on each city, where there are so many: one may be off by a lamp that it met. Seen of
-/// `light-tree` on two cities like downtown, after one run: 2 picks left at 2.2 times the least, in truth within a tenth.
+/// `light-tree` on two cities like downtown: after one run the least score was half of what fresh runs gave any point, and 2
+/// picks were left at 2.2 times it, though their own score was within a tenth of the default's by fresh runs.
 const FEWEST: u32 = 2;
 
 /// A point is too dear where its first image takes more than so many times the time.

@@ -1,7 +1,7 @@
 //! Which condition, size, city and view is a case?
 
 use super::super::session::Session;
-use super::{CITIES, PASSES};
+use super::CITIES;
 use crate::base::error::Result;
 use crate::measure::reference::{Reference, Wanted};
 use crate::measure::target::Target;
@@ -17,7 +17,10 @@ use std::path::Path;
 /// Receivers of a frame that errors are taken at.
 const PIXELS: usize = 512;
 /// Pixels across and down where nobody says otherwise.
-const RESOLUTION: (u32, u32) = (120, 68);
+const RESOLUTION: (u32, u32) = (96, 54);
+/// The numbers of passes that a run may have. Where receivers move, the truth must be known at all that the most of them visit.
+const STAYING: &[u32] = &[1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
+const MOVING: &[u32] = &[1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
 /// Most counted work of a case's reference, in nominal seconds, and its own relMSE where that allows.
 const REFERENCE_S: f64 = 24.0;
 const OWN_REL_MSE: f64 = 1e-5;
@@ -92,10 +95,15 @@ impl Size<'_> {
         Ok(Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, self.receivers))
     }
 
+    /// The numbers of passes that a run may have, ascending.
+    pub(super) fn passes(&self) -> &'static [u32] {
+        if self.receivers.moves() { MOVING } else { STAYING }
+    }
+
     /// What is measured of a stage, and what is true there.
     pub(super) fn target<'s>(&self, stage: &'s Stage) -> Result<(Target<'s>, Reference)> {
         let session = self.cases.session;
-        let target = Target::whole(stage).thinned(session.pixels(PIXELS)).after(PASSES);
+        let target = Target::whole(stage).thinned(session.pixels(PIXELS)).after(self.passes().iter().copied());
         let wanted = Wanted { work_s: REFERENCE_S, ..Wanted::new(OWN_REL_MSE) };
         Reference::bounded(&target, wanted, &session.options.cache, session.watch)
     }

@@ -1,7 +1,6 @@
 //! What does each strategy come to in a case: at its best, and at its defaults?
 
 use super::super::cells::cells;
-use super::PASSES;
 use super::case::{Size, view};
 use crate::base::error::Result;
 use crate::base::random::{RunKey, hash};
@@ -49,13 +48,13 @@ pub(super) fn case(
             strategies.push(one);
         }
     }
-    let (time_s, seed) = (size.cases.time_s, session.options.seed);
+    let (time_s, allowed, seed) = (size.cases.time_s, size.passes(), session.options.seed);
     session.watch.begin("counting", strategies.len() as u64);
     let passes: Vec<std::result::Result<u32, String>> = strategies
         .iter()
         .map(|strategy| {
             session.watch.check()?;
-            let passes = session.engine().alone(|_| affordable(&target, strategy, time_s, seed))?;
+            let passes = session.engine().alone(|_| affordable(&target, strategy, time_s, allowed, seed))?;
             session.watch.advance(1);
             Ok(passes)
         })
@@ -91,7 +90,7 @@ fn affordable(target: &Target<'_>, strategy: &Configured, time_s: f64, seed: u64
     let context = BuildContext { stage: target.stage, seed };
     let sampler = strategy.build(context).map_err(|error| error.to_string())?;
     Work::affordable(target, sampler.as_ref(), key, COUNTED, DEAREST * time_s)
-        .map(|work| work.passes_next_to(time_s, &PASSES))
+        .map(|work| work.passes_next_to(time_s, allowed))
         .map_err(|first_s| format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {time_s} s"))
 }
 

@@ -44,10 +44,8 @@ const MOST: u64 = 100_000;
 /// Cities that are reported, and others that parameters are found on.
 const CITIES: usize = 5;
 /// A run's share of the counted seconds and of the runs that are asked for: there are many of them.
-const TIME: f64 = 0.2;
+const TIME: f64 = 0.12;
 const RUNS: u32 = 2;
-/// The numbers of passes that a run may have: the truth of receivers that move must be known after each of them.
-const PASSES: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
 
 fn run(session: &Session<'_>) -> Result<Study> {
     let options = session.options;

@@ -1,9 +1,9 @@
 //! What stands in the tables of `study elsewhere`?
 
 use super::super::columns::{column, interval};
+use super::CITIES;
 use super::case::Cases;
 use super::together::base;
-use super::{CITIES, PASSES};
 use crate::record::study::{ColumnRecord, Format, TableRecord};
 use crate::strategy::Configured;
 use crate::visibility::visits::Receivers;
@@ -178,8 +178,9 @@ fn measured(cases: &Cases<'_>) -> TableRecord {
         title: "every case".to_owned(),
         columns,
         notes: vec![format!(
-            "{} runs of the number of passes among {PASSES:?} whose counted work, set-up in, comes next to {} s; a pass that takes \
-             more than four times that is not run. CPU ms: set-up and every arrival in. relMSE at so many pixels.",
+            "{} runs of the number of passes (powers of two and their halves more, at most 128, and 32 where receivers move) whose \
+             counted work, set-up in, comes next to {} s; a pass that takes more than four times that is not run. CPU ms: set-up \
+             and every arrival in. relMSE at so many pixels.",
             cases.runs, cases.time_s
         )],
         plots: Vec::new(),

@@ -1,8 +1,8 @@
 //! Which parameters are best, and what do they lose in cities that they were not found in?
 
 use super::super::cells::cells;
+use super::CITIES;
 use super::case::Size;
-use super::{CITIES, PASSES};
 use crate::base::error::Result;
 use crate::measure::reference::Reference;
 use crate::measure::target::Target;
@@ -15,7 +15,7 @@ use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 
 /// Runs on each city that a choice rests on.
-const RUNS: u32 = 4;
+const RUNS: u32 = 6;
 
 /// The strategies at what is found best for a size, in the order of their grids: found now, or by the study before it was
 /// interrupted. One that no point of its grid can be measured at stays at its default.
@@ -58,7 +58,7 @@ fn on(size: &Size<'_>, grids: &[Vec<Configured>], open: &dyn Fn(usize) -> Result
         engine: &engine,
         cities: &cities,
         time_s: size.cases.time_s,
-        passes: &PASSES,
+        passes: size.passes(),
         runs: RUNS,
         seed: session.options.seed,
     };
