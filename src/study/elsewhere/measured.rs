@@ -85,7 +85,13 @@ pub(super) fn case(
 }
 
 /// The number of passes that come next to the time, by counted work; or why there are none.
-fn affordable(target: &Target<'_>, strategy: &Configured, time_s: f64, seed: u64) -> std::result::Result<u32, String> {
+fn affordable(
+    target: &Target<'_>,
+    strategy: &Configured,
+    time_s: f64,
+    allowed: &[u32],
+    seed: u64,
+) -> std::result::Result<u32, String> {
     let key = RunKey { seed, run: u32::MAX };
     let context = BuildContext { stage: target.stage, seed };
     let sampler = strategy.build(context).map_err(|error| error.to_string())?;
