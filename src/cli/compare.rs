@@ -1,13 +1,16 @@
 //! `citylights compare`: error against run time.
 
+use super::begun;
 use super::folders::{CACHE, RESULTS};
 use super::home::Home;
 use super::outcome::Outcome;
+use super::peer_options::PeerOptions;
 use super::progress::Progress;
 use super::replicates::{Entry, ReplicateOptions};
 use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
+use super::tuning::{TuneOptions, Tuning};
 use super::values::seconds;
 use crate::base::claim::Claim;
 use crate::base::error::{Error, Result};
@@ -17,17 +20,19 @@ use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
 use crate::measure::reference::WORK_S;
+use crate::measure::tuning_cities::Search;
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::environment;
 use crate::record::store::{self, RowWriter, write_run};
-use crate::record::{Kind, Machine, ResultFolder, Row, RunRecord, SCHEMA};
+use crate::record::{Kind, Parameters, ResultFolder, Row, RunRecord};
 use crate::report;
 use crate::report::{replicates, table};
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 use crate::visibility::visits::Receivers;
 use clap::Args;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -49,17 +54,8 @@ pub(super) struct Arguments {
     /// Independent runs
     #[arg(long, value_name = "K", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=256))]
     repeats: u32,
-    /// Another renderer, on the exported scene, in the same table: mitsuba, cycles, cycles:light-tree=off; more than once
-    /// for more than one. src/peers/scripts/README.md says how to install them
-    #[arg(long = "peer", value_name = "NAME")]
-    peers: Vec<String>,
-    /// The Python that has the peers; by default what CITYLIGHTS_PYTHON names, else src/peers/scripts/.venv/bin/python where
-    /// that is, else python3
-    #[arg(long, value_name = "FILE")]
-    peer_python: Option<PathBuf>,
-    /// Seconds that a peer may take from one image to the next
-    #[arg(long, value_name = "S", default_value = "1800", value_parser = seconds)]
-    peer_patience: f64,
+    #[command(flatten)]
+    peers: PeerOptions,
     /// The result folder; a new one under results/ by default. An interrupted comparison there is resumed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -85,29 +81,30 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME")]
     base: Option<String>,
     #[command(flatten)]
+    tuning: TuneOptions,
+    #[command(flatten)]
     replicates: ReplicateOptions,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
 
 pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outcome> {
-    let strategies =
-        arguments.strategies.as_deref().map_or_else(|| home.registry.all(), |list| home.registry.parse_list(list))?;
-    let peers = peers(&arguments.peers)?;
-    if arguments.receivers.moves() && !peers.is_empty() {
-        let text = "a peer renders what pixels see through their centres: leave out --peer, or take --receivers centre";
-        return Err(Error::Invalid(text.into()).into());
-    }
-    let base = base(arguments, home, &strategies)?;
+    let contestants = arguments.tuning.contestants(arguments.strategies.as_deref(), home.registry)?;
+    let strategies = &contestants.strategies[..];
+    let peers = arguments.peers.peers(arguments.receivers.moves())?;
+    let base = base(arguments, home, strategies)?;
     // A folder that cannot be used must not cost the reading of scenes.
     arguments.out.as_deref().map_or(Ok(()), |out| ResultFolder::check(out, Kind::Comparison))?;
     let progress = Progress::new()?;
     let threads = arguments.threads.unwrap_or_else(|| environment::cores().min(2));
     pool(Some(threads))?.install(|| {
         let scenes = arguments.replicates.entries(&arguments.scenes, &arguments.scene_options)?;
+        let tuning = Tuning::new(&arguments.tuning, home.registry, &contestants, &scenes, arguments.receivers)?;
         let count = scenes.len();
-        let asked = Asked { home, arguments, strategies: &strategies, peers: &peers, threads, scenes: count };
-        let record = RunRecord { base, ..record(&asked, &scenes) };
+        let asked = Asked { home, arguments, peers: &peers, threads, scenes: count };
+        let plan = plan(&asked, &scenes, strategies) + &tuning.plan();
+        let record = begun::record(home, plan, arguments.seed, arguments.repeats);
+        let record = RunRecord { base, parameters: tuning.parameters(), ..record };
         if threads > environment::cores() {
             say(&format!(
                 "{threads} runs side by side on {} cores: wall times will mean nothing",
@@ -116,11 +113,13 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         }
         let Some(mut session) = Session::open(arguments, record, &scenes)? else { return Ok(Outcome::Done) };
         progress.last_words(&kept(&session.folder));
+        let tuned = session.tune(&tuning, &asked, &progress)?;
         for mut entry in scenes {
+            let strategies = tuned.get(entry.group()).map_or(strategies, Vec::as_slice);
             progress.scene(&entry.name);
             let scene = entry.take()?;
             let stage = entry.options.prepare(scene, arguments.receivers);
-            session.scene(&stage, &entry, &asked, &progress)?;
+            session.scene(&stage, &entry, strategies, &asked, &progress)?;
         }
         session.finish()?;
         print_families(&session.record)?;
@@ -133,7 +132,6 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
 struct Asked<'a> {
     home: &'a Home<'a>,
     arguments: &'a Arguments,
-    strategies: &'a [Configured],
     peers: &'a [Peer],
     threads: u32,
     /// How many scenes are compared.
@@ -179,8 +177,49 @@ impl Session {
         Ok(Some(Self { folder, record, rows, films, before, nothing: Vec::new() }))
     }
 
-    fn scene(&mut self, stage: &Stage, entry: &Entry, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<()> {
-        let Asked { home, arguments, strategies, peers, threads, scenes } = *asked;
+    /// The strategies of each family of scenes at the parameters that were found for it; none where nothing is tuned.
+    fn tune(
+        &mut self,
+        tuning: &Tuning<'_>,
+        asked: &Asked<'_>,
+        progress: &Progress,
+    ) -> anyhow::Result<HashMap<String, Vec<Configured>>> {
+        let Asked { home, arguments, threads, .. } = *asked;
+        let clock = Cpu::new();
+        let search = Search {
+            engine: &Engine { clock: &clock, workers: threads as usize, seed: arguments.seed },
+            time_s: arguments.tuning.tune_time,
+            most_passes: arguments.budget.unwrap_or(USUAL_PASSES),
+            seed: arguments.seed,
+            reference_work_s: arguments.reference_work,
+            cache: &arguments.cache,
+            program: home.foreign(),
+        };
+        let settled = tuning.settle(self.folder.path(), &search, arguments.receivers, progress);
+        let (strategies, families) = settled.inspect_err(|error| self.resumable(error))?;
+        if !families.is_empty() {
+            self.record.parameters = Some(Parameters::Tuned(families));
+            write_run(self.folder.path(), &self.record)?;
+        }
+        Ok(strategies)
+    }
+
+    /// Says how to go on, where somebody wished to stop.
+    fn resumable(&self, error: &Error) {
+        if matches!(error, Error::Interrupted) {
+            say(&kept(&self.folder));
+        }
+    }
+
+    fn scene(
+        &mut self,
+        stage: &Stage,
+        entry: &Entry,
+        strategies: &[Configured],
+        asked: &Asked<'_>,
+        progress: &Progress,
+    ) -> anyhow::Result<()> {
+        let Asked { home, arguments, peers, threads, scenes } = *asked;
         let clock = Cpu::new();
         let engine = Engine { clock: &clock, workers: threads as usize, seed: arguments.seed };
         let options = ComparisonOptions {
@@ -197,7 +236,7 @@ impl Session {
             strategies,
             scenes,
             budget: Budget {
-                usual_passes: arguments.budget.unwrap_or(64),
+                usual_passes: arguments.budget.unwrap_or(USUAL_PASSES),
                 most_passes: arguments.budget.unwrap_or(1 << 20),
                 work_s: arguments.seconds,
             },
@@ -209,28 +248,24 @@ impl Session {
             films: &self.films,
         };
         let file = entry.file.display().to_string();
-        let resumable = |error: &Error| {
-            if matches!(error, Error::Interrupted) {
-                say(&kept(&self.folder));
-            }
-        };
         let compared = compare(stage, &file, &options, &self.before, &mut self.rows, progress);
-        let Compared { mut scene, mut rows, truth, target, nothing } = compared.inspect_err(resumable)?;
+        let Compared { mut scene, mut rows, truth, target, nothing } =
+            compared.inspect_err(|error| self.resumable(error))?;
         let peers = if nothing.is_some() { &[] } else { peers };
         self.nothing.extend(nothing.map(|why| format!("{}: {why}", scene.name)));
         let options = peers::measure::PeerOptions {
             peers,
-            python: &python(arguments.peer_python.as_deref()),
-            spp: &budgets(arguments.budget.unwrap_or(64)).collect::<Vec<u32>>(),
+            python: &arguments.peers.python(),
+            spp: &budgets(arguments.budget.unwrap_or(USUAL_PASSES)).collect::<Vec<u32>>(),
             times_s: &scene.times_s,
             runs: arguments.repeats.min(PEER_RUNS),
             seed: arguments.seed,
             folder: self.folder.path(),
             films: &self.films,
-            patience: Duration::from_secs_f64(arguments.peer_patience),
+            patience: Duration::from_secs_f64(arguments.peers.peer_patience),
         };
         let others = peers::measure::measure(&target, &truth, &options, &self.before, &mut self.rows, progress);
-        let others = others.inspect_err(resumable)?;
+        let others = others.inspect_err(|error| self.resumable(error))?;
         for summary in &others.summaries {
             if let Some(why) = summary.skipped.as_ref().or(summary.error.as_ref()) {
                 say(&format!("peer `{}`: {why}", summary.strategy));
@@ -302,41 +337,25 @@ fn print_families(record: &RunRecord) -> anyhow::Result<()> {
     replicates::texts(record, width()).into_iter().try_for_each(|text| print(&format!("{text}\n")))
 }
 
-fn record(asked: &Asked<'_>, scenes: &[Entry]) -> RunRecord {
-    let Asked { home, arguments, strategies, peers, .. } = *asked;
+/// All that decides the rows, but for tuning.
+fn plan(asked: &Asked<'_>, scenes: &[Entry], strategies: &[Configured]) -> String {
+    let Asked { arguments, peers, .. } = *asked;
     let strategies: Vec<&str> = strategies.iter().map(Configured::name).collect();
     let scenes: Vec<String> = scenes.iter().map(|scene| format!("{}={}", scene.name, scene.hash)).collect();
-    RunRecord {
-        plan: format!(
-            "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}; receivers {}",
-            scenes.join(" "),
-            strategies.join(" "),
-            peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
-            arguments.budget,
-            arguments.seconds,
-            RATES,
-            arguments.reference_work,
-            arguments.repeats,
-            arguments.seed,
-            arguments.scene_options.describe(),
-            arguments.receivers.name(),
-        ),
-        schema: SCHEMA,
-        command: home.command(),
-        program: home.foreign(),
-        date: environment::date(),
-        version: environment::version(),
-        revision: environment::revision(),
-        seed: arguments.seed,
-        repeats: arguments.repeats,
-        machine: Machine { cpu: environment::cpu(), cores: environment::cores(), os: environment::os() },
-        compiler: environment::compiler(),
-        flags: environment::flags(),
-        base: None,
-        warnings: environment::warnings(),
-        finished: false,
-        scenes: Vec::new(),
-    }
+    format!(
+        "scenes {}; strategies {}{}; budget {:?}, {} s at rates {}; reference {} s; {} runs; seed {}; {}; receivers {}",
+        scenes.join(" "),
+        strategies.join(" "),
+        peers.iter().map(|peer| format!("; peer {}", peer.name())).collect::<String>(),
+        arguments.budget,
+        arguments.seconds,
+        RATES,
+        arguments.reference_work,
+        arguments.repeats,
+        arguments.seed,
+        arguments.scene_options.describe(),
+        arguments.receivers.name(),
+    )
 }
 
 /// The strategy that others are held against over many cities and views.
@@ -362,21 +381,8 @@ fn base(arguments: &Arguments, home: &Home<'_>, strategies: &[Configured]) -> Re
 /// See [`base`].
 const BASE: &str = "light-tree";
 
+/// Most passes of a run where nobody says otherwise and no bias asks for more.
+const USUAL_PASSES: u32 = 64;
+
 /// Most runs of a peer: they are dear, and each is a whole image at every sample count.
 const PEER_RUNS: u32 = 8;
-
-fn peers(given: &[String]) -> Result<Vec<Peer>> {
-    let peers = given.iter().map(|text| Peer::parse(text)).collect::<Result<Vec<_>>>()?;
-    let twice = peers.iter().enumerate().find(|(i, peer)| peers[..*i].iter().any(|other| other.name() == peer.name()));
-    match twice {
-        Some((_, peer)) => Err(Error::Invalid(format!("the peer `{}` is named twice", peer.name()))),
-        None => Ok(peers),
-    }
-}
-
-/// The Python that peers are run with.
-fn python(given: Option<&Path>) -> PathBuf {
-    let own = || Some(PathBuf::from("src/peers/scripts/.venv/bin/python")).filter(|file| file.exists());
-    let named = given.map(Path::to_owned).or_else(|| std::env::var_os("CITYLIGHTS_PYTHON").map(PathBuf::from));
-    named.or_else(own).unwrap_or_else(|| "python3".into())
-}

@@ -15,15 +15,21 @@
 //! | is something said while a scene is read and prepared? | `waiting` |
 //! | which scene does it take, and how is that prepared? | `scene` |
 //! | which cities and views of it does a comparison take? | `replicates` |
+//! | what is recorded of a comparison before anything is measured? | `begun` |
+//! | with which parameters does it run its strategies? | `tuning` |
+//! | which of its scenes are tuned for together, and on which cities? | `family` |
+//! | which other renderers are compared? | `peer_options` |
 //! | which text of an option is right? | `values` |
 //! | how many threads does it run on? | `threads` |
 //! | can its file be written, and how is a picture? | `output` |
 //! | where do results and references lie? | `folders` |
 
+mod begun;
 mod compare;
 mod diff_image;
 mod explain;
 mod export;
+mod family;
 mod folders;
 mod home;
 mod inspect;
@@ -32,6 +38,7 @@ mod list;
 mod new_strategy;
 mod outcome;
 mod output;
+mod peer_options;
 mod progress;
 mod reference;
 mod render;
@@ -44,6 +51,7 @@ mod stability;
 mod study;
 mod terminal;
 mod threads;
+mod tuning;
 mod values;
 mod verify;
 mod waiting;

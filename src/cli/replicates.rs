@@ -31,8 +31,7 @@ impl ReplicateOptions {
 
     /// What they are, to name a folder with: `downtown-2-cities-street-roof`.
     pub(super) fn folder_name(&self, entries: &[Entry]) -> String {
-        let mut families: Vec<&str> =
-            entries.iter().map(|entry| entry.family.as_deref().unwrap_or(&entry.name)).collect();
+        let mut families: Vec<&str> = entries.iter().map(Entry::group).collect();
         families.dedup();
         let cities = self.cities.map(|cities| format!("-{cities}-cities"));
         let views = self.views.iter().map(|view| format!("-{}", view.name()));
@@ -87,6 +86,8 @@ impl ReplicateOptions {
                     name: format!("{}{}", scene.name(), varied.collect::<String>()),
                     family: self.are_wanted().then(|| scene.name().to_owned()),
                     hash: scene_hash(&scene),
+                    seed: scene.seed(),
+                    lights: scene.lights().len() as u64,
                     // The one that is measured first need not be read again.
                     scene: Some(scene).filter(|_| entries.is_empty()),
                 });
@@ -109,11 +110,20 @@ pub(super) struct Entry {
     pub(super) family: Option<String>,
     /// The hash of its content.
     pub(super) hash: String,
+    /// Seed of its generator.
+    pub(super) seed: u64,
+    /// How many lights.
+    pub(super) lights: u64,
     /// The scene itself, where it was kept.
     scene: Option<Scene>,
 }
 
 impl Entry {
+    /// The name of its family, or its own where it is by itself.
+    pub(super) fn group(&self) -> &str {
+        self.family.as_deref().unwrap_or(&self.name)
+    }
+
     /// The scene, under its own name.
     ///
     /// # Errors

@@ -105,6 +105,11 @@ impl SceneOptions {
         Self { scene_seed: seed.or(self.scene_seed), view: view.or(self.view), ..self.clone() }
     }
 
+    /// The same options for whatever city a recipe's seed says.
+    pub(super) fn of_no_seed(&self) -> Self {
+        Self { scene_seed: None, ..self.clone() }
+    }
+
     /// The view that is asked for in place of a recipe's camera.
     pub(super) fn view(&self) -> Option<View> {
         self.view

@@ -26,6 +26,6 @@ pub(crate) mod summary;
 pub(crate) mod target;
 pub(crate) mod tiles;
 pub(crate) mod tune;
-#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
 pub(crate) mod tuned;
+pub(crate) mod tuning_cities;
 pub(crate) mod work;

@@ -2,9 +2,12 @@
 
 use super::work::RATES;
 use crate::base::error::{Error, Result};
-use crate::record::tuned::{Condition, Tuned, TunedStrategy};
+use crate::record::tuned::{Condition, Tuned, TunedStrategy, TuningCity};
 use crate::strategy::{Configured, Registry};
 use std::path::Path;
+
+/// Cities are of one size up to so many times the lights: where no windows make up a number, each seed has its own.
+const SAME_SIZE: f64 = 1.1;
 
 /// What was read from a file, held against the program that is to use it.
 #[derive(Debug)]
@@ -34,34 +37,35 @@ impl<'a> Found<'a> {
         Ok(found)
     }
 
-    /// Every strategy as it was found best for a condition, and beside it as it was asked for, where these differ: each
-    /// once. One whose grid is a single point stays as it is.
+    /// Every strategy as it was found best for a condition, and beside it its default, the first point of its grid, where
+    /// these differ: each once. One whose grid is a single point stays as it is.
     ///
     /// # Errors
-    /// Another condition than the file's; a scene to be reported, by its hash, that it was tuned on; a strategy that was not
-    /// tuned.
+    /// Another condition than the file's; a city to be reported that it was tuned on; a strategy that was not tuned.
     pub(crate) fn apply(
         &self,
         registry: &Registry,
-        strategies: &[Configured],
+        grids: &[Vec<Configured>],
         condition: &Condition,
-        reported: &[&str],
+        reported: &[TuningCity],
     ) -> Result<Vec<Configured>> {
         self.is_for(condition)?;
-        if let Some((at, city)) =
-            self.tuned.cities.iter().enumerate().find(|(_, city)| reported.contains(&city.hash.as_str()))
-        {
+        // Of one condition cities with the same seed are the same, whatever they are seen from.
+        let is_reported =
+            |city: &TuningCity| reported.iter().any(|other| city.seed == other.seed || city.hash == other.hash);
+        if let Some((at, city)) = self.tuned.cities.iter().enumerate().find(|(_, city)| is_reported(city)) {
             let why = format!(
-                "seed {} is a scene that would be reported: never the one that it was tuned on; take another seed",
+                "the city of seed {} would be reported: never one that it was tuned on; take another --scene-seed",
                 city.seed
             );
             return Err(self.wrong(&format!("cities[{at}]"), why));
         }
         let mut all: Vec<Configured> = Vec::new();
-        for strategy in strategies {
+        for grid in grids {
+            let strategy = &grid[0];
             let best = match self.of(strategy) {
                 Some(found) => found.best.as_deref(),
-                None if registry.grid(strategy.name())?.len() == 1 => None,
+                None if grid.len() == 1 => None,
                 None => {
                     let why = format!("says nothing of `{}`: tune it too, or leave it out", strategy.name());
                     return Err(self.wrong("strategies", why));
@@ -78,23 +82,25 @@ impl<'a> Found<'a> {
     }
 
     /// What was found for a strategy, if it was tuned.
-    pub(crate) fn of(&self, strategy: &Configured) -> Option<&'a TunedStrategy> {
+    fn of(&self, strategy: &Configured) -> Option<&'a TunedStrategy> {
         self.tuned.strategies.iter().find(|found| found.default == strategy.name())
     }
 
     fn is_for(&self, wanted: &Condition) -> Result<()> {
         let Condition { recipe, hash, lights, receivers } = &self.tuned.condition;
         let differs = |field: &str, own: &str, wanted: &str| {
-            let why = format!("is {own}, this is {wanted}: tune for it, or take the file that was tuned for it");
+            let why = format!("is {own}, this is {wanted}: tune for this, or take the file that was tuned for it");
             Err(self.wrong(&format!("condition.{field}"), why))
         };
         if *recipe != wanted.recipe {
             return differs("recipe", recipe, &wanted.recipe);
         }
         if *hash != wanted.hash {
-            return differs("hash", hash, &wanted.hash);
+            let this = format!("{} (another text of the recipe, resolution, view or exposure)", wanted.hash);
+            return differs("hash", hash, &this);
         }
-        if *lights != wanted.lights {
+        let (least, most) = (wanted.lights.min(*lights), wanted.lights.max(*lights));
+        if most as f64 > SAME_SIZE * least as f64 {
             return differs("lights", &lights.to_string(), &wanted.lights.to_string());
         }
         if *receivers != wanted.receivers {

@@ -2,6 +2,7 @@
 //!
 //! A record is a file like any other: what its numbers promise is held against one another before anything is made of it.
 
+use super::parameters::Parameters;
 use super::run::RunRecord;
 use super::scene::SceneRecord;
 use super::study::{StudyRecord, TableRecord};
@@ -27,6 +28,7 @@ pub(super) trait Checked {
 impl Checked for RunRecord {
     fn check(&self) -> Result<(), Fault> {
         count("repeats", self.repeats, [1, MOST_RUNS])?;
+        self.parameters.as_ref().map_or(Ok(()), Parameters::check)?;
         let mut names = HashSet::new();
         for (at, scene) in self.scenes.iter().enumerate() {
             let place = format!("scenes[{at}]");

@@ -19,6 +19,7 @@
 //! | which version of which files is it? | `SCHEMA`, `files` |
 //! | can a record that was read be what it says? | `check` |
 //! | which parameters were found best, and for what? | `tuned` |
+//! | how were the parameters of a comparison chosen? | `Parameters` |
 //! | how does JSON hold infinity and NaN? | `number` |
 
 mod check;
@@ -28,6 +29,7 @@ pub(crate) mod folder;
 pub(crate) mod interval;
 mod number;
 mod origin;
+mod parameters;
 mod program;
 pub(crate) mod row;
 pub(crate) mod run;
@@ -37,12 +39,12 @@ pub(crate) mod store;
 pub(crate) mod study;
 pub(crate) mod study_store;
 pub(crate) mod summary;
-#[cfg_attr(not(test), expect(dead_code, reason = "the command line does not ask for it yet"))]
 pub(crate) mod tuned;
 
 pub use crate::base::counts::Counts;
 pub(crate) use folder::{Kind, ResultFolder};
 pub use interval::Interval;
+pub(crate) use parameters::{Parameters, TunedFamily};
 pub use program::Program;
 pub(crate) use row::Row;
 pub(crate) use run::{Machine, RunRecord};

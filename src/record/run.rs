@@ -1,5 +1,6 @@
 //! What was run, by what, where.
 
+use super::parameters::Parameters;
 use super::program::Program;
 use super::scene::SceneRecord;
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,10 @@ pub(crate) struct RunRecord {
     /// unbiased strategy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<String>,
+    /// How the strategies' parameters were chosen; none where no strategy has any to choose among, and in records that are
+    /// older than this field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parameters: Option<Parameters>,
     /// What makes the figures doubtful: a busy machine, a debug build.
     pub warnings: Vec<String>,
     /// Whether it came to its end; otherwise some rows are missing.

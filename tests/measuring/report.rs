@@ -255,6 +255,7 @@ pub(super) fn record() -> (RunRecord, Vec<Row>) {
         compiler: "rustc 1.95.0".to_owned(),
         flags: "release, x86-64-v2".to_owned(),
         base: None,
+        parameters: None,
         warnings: vec!["the load average was 3.1 on 2 cores".to_owned()],
         finished: true,
         scenes: vec![scene],

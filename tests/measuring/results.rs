@@ -46,6 +46,7 @@ fn record() -> RunRecord {
         compiler: "rustc 1.95.0".to_owned(),
         flags: "release, x86-64".to_owned(),
         base: None,
+        parameters: None,
         warnings: vec!["two other processes ran".to_owned()],
         finished: true,
         scenes: vec![SceneRecord {

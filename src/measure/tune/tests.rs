@@ -4,7 +4,7 @@ use crate::measure::clock::Cpu;
 use crate::measure::observer::Unobserved;
 use crate::measure::reference::Reference;
 use crate::measure::tuned::Found;
-use crate::record::tuned::{self, TunedPoint};
+use crate::record::tuned::{self, TunedPoint, TuningCity};
 use crate::scene::Scene;
 use crate::sources::small::{ground, point};
 use crate::strategy::Registry;
@@ -175,22 +175,28 @@ fn what_was_found_is_read_as_it_was_written_and_used_for_its_condition_alone() {
     assert_eq!(tuned::read(&file).expect("read"), tuned);
 
     let registry = registry();
-    let asked = registry.parse_list("toy same:tag=3").expect("a list");
-    let apply = |tuned: &Tuned, asked: &[Configured], condition: &Condition, reported: &[&str]| {
+    let asked = registry.grids("toy same:tag=3").expect("a list");
+    let apply = |tuned: &Tuned, asked: &[Vec<Configured>], condition: &Condition, reported: &[TuningCity]| {
         let found = Found::new(&file, tuned, &registry)?;
         let all = found.apply(&registry, asked, condition, reported)?;
         Ok::<_, Error>(all.iter().map(|one| one.name().to_owned()).collect::<Vec<_>>())
     };
-    let names = apply(&tuned, &asked, &condition(), &["another"]).expect("applied");
+    let other = TuningCity { seed: 12_345_678, hash: "another".into() };
+    let names = apply(&tuned, &asked, &condition(), &[other]).expect("applied");
     assert_eq!(names, ["toy:picks=4", "toy", "same:tag=3"]);
     let message = |result: Result<Vec<String>>| result.err().map(|error| error.to_string()).unwrap_or_default();
     let other = Condition { lights: 2, ..condition() };
     assert!(message(apply(&tuned, &asked, &other, &[])).contains("`condition.lights`: is 1, this is 2"));
     let other = Condition { receivers: "spread".into(), ..condition() };
     assert!(message(apply(&tuned, &asked, &other, &[])).contains("is centre, this is spread"));
-    let reported = message(apply(&tuned, &asked, &condition(), &[&tuned.cities[1].hash]));
-    assert!(reported.contains("`cities[1]`") && reported.contains("take another seed"), "{reported}");
-    let untuned = registry.parse_list("same").expect("a list");
+    let city = &tuned.cities[1];
+    for reported in
+        [TuningCity { seed: 12_345_678, ..city.clone() }, TuningCity { hash: "another".into(), ..city.clone() }]
+    {
+        let reported = message(apply(&tuned, &asked, &condition(), &[reported]));
+        assert!(reported.contains("`cities[") && reported.contains("take another --scene-seed"), "{reported}");
+    }
+    let untuned = registry.grids("same").expect("a list");
     assert!(message(apply(&tuned, &untuned, &condition(), &[])).contains("says nothing of `same`"));
     let mut strange = tuned.clone();
     strange.strategies[0].best = Some("tay:picks=4".into());
