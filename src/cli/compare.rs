@@ -308,7 +308,7 @@ impl Session {
         self.record.finished = true;
         self.rows.sync()?;
         let folder = self.folder.path();
-        report::write(folder, &report::derive(&self.record, &store::read_rows(folder)?.rows)?)?;
+        report::write(folder, &report::derive_all(folder, &self.record, &store::read_rows(folder)?.rows)?)?;
         write_run(folder, &self.record)?;
         self.films.remove()
     }

@@ -189,8 +189,7 @@ impl<'a> Tuning<'a> {
         let found = search.on(&stages, &self.contestants.grids, family.condition.clone(), progress)?;
         for strategy in &found.strategies {
             let best = strategy.best.as_deref().unwrap_or("none of its points could be measured");
-            let gain =
-                strategy.gain.map(|gain| format!(", at {:.2} times the default's price of an error", 1.0 / gain.mean));
+            let gain = strategy.gain.map(|gain| format!(", V {:.2} times the default's", 1.0 / gain.mean));
             say(&format!("{}: `{}`: best at `{best}`{}", family.name, strategy.default, gain.unwrap_or_default()));
         }
         Ok(found)

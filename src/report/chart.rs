@@ -55,7 +55,7 @@ pub(crate) struct Scale {
 
 /// A curve.
 pub(crate) struct Series {
-    /// Its name; what follows a `:` stands below it.
+    /// Its name; what follows a `:` stands below it. One without a name is not in the legend.
     pub(crate) name: String,
     /// Its look.
     pub(crate) mark: Mark,
@@ -163,7 +163,7 @@ impl Chart {
             let y = lines.last().map_or(TOP + 10, |last| last.y + step);
             lines.push(LegendLine { y, text: text.to_owned(), mark });
         };
-        for Series { name, mark, .. } in self.series.iter().filter(|series| !series.points.is_empty()) {
+        for Series { name, mark, .. } in self.series.iter().filter(|s| !s.points.is_empty() && !s.name.is_empty()) {
             let (name, parameters) = name.split_once(':').unwrap_or((name, ""));
             push(27, name, Some(*mark));
             wrapped(parameters).iter().for_each(|line| push(19, line, None));
@@ -342,6 +342,7 @@ fn stroke(area: &Area, at: &[(i32, i32)], mark: &Mark) -> Drawn {
         Line::Solid => area.draw(&PathElement::new(at.to_vec(), look)),
         Line::Dashed => area.draw(&DashedPathElement::new(at.iter().copied(), 7, 5, look)),
         Line::Dotted => area.draw(&DashedPathElement::new(at.iter().copied(), 2, 4, look)),
+        Line::Loose => Ok(()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::number::{digits, grouped, percent, short};
 use super::order::{measured, ordered};
-use crate::record::{RunRecord, SceneRecord, Summary};
+use crate::record::{Parameters, RunRecord, SceneRecord, Summary};
 use std::fmt::Write;
 
 /// What was measured against what, a line each.
@@ -36,6 +36,7 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
         ));
     }
     facts.push(format!("{} runs; relMSE with epsilon {red}, {green}, {blue} (red, green, blue)", run.repeats));
+    facts.extend(parameters(run, scene.family.as_ref().unwrap_or(&scene.name)));
     let mut line = format!("reference: {}, {} shadow rays", reference.kind, grouped(reference.rays));
     _ = write!(line, ", {} CPU s{}", short(reference.cpu_s), if reference.cached { " (cached)" } else { "" });
     if reference.rel_mse > 0.0 {
@@ -47,6 +48,22 @@ pub(super) fn facts(run: &RunRecord, scene: &SceneRecord) -> Vec<String> {
         facts.push(format!("off the clock, shared by all strategies, wall seconds: {}", shared.join(", ")));
     }
     facts
+}
+
+/// How the parameters of the strategies were chosen for a scene, or for the replicates of one; nothing where none could be,
+/// and in older records.
+pub(super) fn parameters(run: &RunRecord, family: &str) -> Option<String> {
+    match run.parameters.as_ref()? {
+        Parameters::AsNamed => Some(
+            "every strategy at its defaults or as named: an order can turn round where each is at its best (`--tune`)"
+                .to_owned(),
+        ),
+        Parameters::Tuned(families) => {
+            let own = families.iter().find(|own| own.family == family)?;
+            let of = if own.cities == 1 { "city of another seed" } else { "cities of other seeds" };
+            Some(format!("parameters found by tuning on {} {of} ({}); default rows beside them", own.cities, own.file))
+        }
+    }
 }
 
 /// What makes the figures of a scene doubtful.

@@ -34,6 +34,8 @@ pub(crate) enum Line {
     Dashed,
     /// Other renderers.
     Dotted,
+    /// Hollow shapes by themselves.
+    Loose,
 }
 
 /// The look of one strategy.
@@ -69,6 +71,11 @@ impl Mark {
         }
     }
 
+    /// The shapes of the `nth` curve, hollow and without a line.
+    pub(crate) fn loose(nth: usize) -> Self {
+        Self { line: Line::Loose, ..Self::nth(nth, true) }
+    }
+
     /// The line of the `nth` curve without its shapes.
     #[cfg(feature = "cli")]
     pub(crate) fn line(nth: usize, line: Line) -> Self {
@@ -83,7 +90,7 @@ impl Mark {
     ) -> Result<(), DrawingAreaErrorKind<DB::ErrorType>> {
         let Some(shape) = self.shape else { return Ok(()) };
         // The inside hides the lines behind it, so that hollow shapes read as hollow.
-        let hollow = self.line == Line::Dashed;
+        let hollow = matches!(self.line, Line::Dashed | Line::Loose);
         let inside = if hollow { WHITE.filled() } else { self.colour.filled() };
         let edge = if hollow { self.colour.stroke_width(2) } else { WHITE.stroke_width(1) };
         if shape.is_empty() {

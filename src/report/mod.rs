@@ -21,6 +21,7 @@ pub(crate) mod splice;
 mod study;
 mod sweep;
 mod table;
+mod tuned;
 
 #[cfg(feature = "cli")]
 pub(crate) use chart::{Area, Chart, Dot, Drawn, FAINT, INK, Scale, Series, WIDTH, text, ticks};
@@ -38,7 +39,7 @@ use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use crate::record::study::Study;
 use crate::record::study_store::{is_study, read_study};
-use crate::record::{ResultFolder, Row, RunRecord, store};
+use crate::record::{ResultFolder, Row, RunRecord, TunedFamily, store};
 use replicates::families;
 use std::fs;
 use std::io::ErrorKind;
@@ -48,7 +49,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Derived {
     /// `<scene>.md`, `<scene>.svg` or `<scene>-<parameter>.svg`, `replicates-<family>.md` or `.svg`, `<study>.md` or
-    /// `<study>-<plot>.svg`.
+    /// `<study>-<plot>.svg`, `tuned-<family>.md` or `frontier-<family>.svg`.
     pub name: String,
     /// All of it.
     pub text: String,
@@ -90,13 +91,35 @@ pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     for family in families(run) {
         let [page, plot] = family.files();
         let own = [Derived { text: family.page(run), name: page }, Derived { text: family.plot()?, name: plot }];
-        if let Some(twice) = own.iter().find(|file| files.iter().any(|other| other.name == file.name)) {
-            let text = format!("two files would both be written to `{}`: rename a scene", twice.name);
-            return Err(Error::Invalid(text));
-        }
-        files.extend(own);
+        add(&mut files, own)?;
     }
     Ok(files)
+}
+
+/// All that follows from a comparison's records in `folder`: as [`derive`], then the page and the plot of what was tuned for
+/// each recipe.
+///
+/// # Errors
+/// As [`derive`]; what was tuned, where it cannot be read.
+pub(crate) fn derive_all(folder: &Path, run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
+    let mut files = derive(run, rows)?;
+    for TunedFamily { family, file, .. } in run.parameters.iter().flat_map(|parameters| parameters.tuned()) {
+        let found = crate::record::tuned::read(&folder.join(file))?;
+        let [page, plot] = tuned::files(family);
+        let text = tuned::page(family, &found, &plot);
+        add(&mut files, [Derived { text, name: page }, Derived { text: tuned::plot(family, &found)?, name: plot }])?;
+    }
+    Ok(files)
+}
+
+/// Adds files that no scene's may be named as.
+fn add(files: &mut Vec<Derived>, own: [Derived; 2]) -> Result<()> {
+    if let Some(twice) = own.iter().find(|file| files.iter().any(|other| other.name == file.name)) {
+        let text = format!("two files would both be written to `{}`: rename a scene", twice.name);
+        return Err(Error::Invalid(text));
+    }
+    files.extend(own);
+    Ok(())
 }
 
 /// The page and the plots of a study.
@@ -223,7 +246,7 @@ fn read(folder: &Path) -> Result<Vec<Derived>> {
         return derive_study(&read_study(folder)?);
     }
     let run = store::read_run(folder)?;
-    derive(&run, &store::read_rows(folder)?.rows)
+    derive_all(folder, &run, &store::read_rows(folder)?.rows)
 }
 
 /// The line, from 1, in which two different texts part.

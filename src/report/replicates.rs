@@ -4,6 +4,7 @@
 //! budget, set-up included. Ratios to a base strategy are taken within each replicate, and their spread over
 //! replicates says how far another city may be from them.
 
+use super::facts::parameters;
 use super::markdown;
 use super::number::{Estimate, NONE, grouped, short};
 use super::order::measured;
@@ -29,6 +30,8 @@ pub(super) struct Family<'a> {
     scenes: Vec<&'a SceneRecord>,
     /// The strategy that others are held against.
     base: &'a str,
+    /// How the strategies' parameters were chosen.
+    parameters: Option<String>,
     /// The unbiased strategies, best first; those that are not measured everywhere after those that are.
     rows: Vec<Row<'a>>,
 }
@@ -52,7 +55,7 @@ pub(super) fn families(run: &RunRecord) -> Vec<Family<'_>> {
     let scenes = |name: &str| run.scenes.iter().filter(|scene| scene.family.as_deref() == Some(name)).collect();
     let all = names.into_iter().map(|name| (name, scenes(name)));
     all.filter(|(_, scenes): &(_, Vec<_>)| scenes.len() > 1)
-        .map(|(name, scenes)| Family::of(name, scenes, base))
+        .map(|(name, scenes)| Family { parameters: parameters(run, name), ..Family::of(name, scenes, base) })
         .collect()
 }
 
@@ -79,7 +82,7 @@ impl<'a> Family<'a> {
         let mut rows: Vec<Row<'_>> = strategies.iter().zip(places).enumerate().map(row).collect();
         let mean = |row: &Row<'_>| row.ratio.map_or(f64::INFINITY, |ratio| ratio.mean);
         rows.sort_by(|a, b| (a.place.is_none(), mean(a)).partial_cmp(&(b.place.is_none(), mean(b))).expect("no NaN"));
-        Self { name, scenes, base, rows }
+        Self { name, scenes, base, parameters: None, rows }
     }
 
     /// The files that the family's page and plot are written to.
@@ -107,7 +110,8 @@ impl<'a> Family<'a> {
             [first, .., last] => format!("{} cities, seeds {first} to {last}", seeds.len()),
             [] => String::new(),
         };
-        vec![format!("{cities}; views: {}", self.views().join(", "))]
+        let replicates = format!("{cities}; views: {}", self.views().join(", "));
+        std::iter::once(replicates).chain(self.parameters.clone()).collect()
     }
 
     /// The views that there are, in the order of the scenes.

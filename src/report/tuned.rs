@@ -15,7 +15,10 @@ use std::fmt::Write;
 
 /// The files that the page and the plot of a recipe are written to.
 pub(super) fn files(family: &str) -> [String; 2] {
-    [format!("{}.md", file_name(&format!("tuned-{family}"))), format!("{}.svg", file_name(&format!("frontier-{family}")))]
+    [
+        format!("{}.md", file_name(&format!("tuned-{family}"))),
+        format!("{}.svg", file_name(&format!("frontier-{family}"))),
+    ]
 }
 
 /// The page in GitHub's Markdown; `plot` is the address of the plot as seen from there.
@@ -49,7 +52,10 @@ pub(super) fn plot(family: &str, tuned: &Tuned) -> Result<String> {
     let remarks = ["filled: no point of the same strategy", "is both cheaper and better", "hollow: the other points"];
     Chart {
         title: title(family),
-        subtitle: format!("geometric means over {} cities; V, their product, falls to the lower left", tuned.cities.len()),
+        subtitle: format!(
+            "geometric means over {} cities; V, their product, falls to the lower left",
+            tuned.cities.len()
+        ),
         x: scale("nominal CPU seconds of a pass, with its share of the set-up"),
         y: scale("relMSE x passes"),
         series: loose.into_iter().chain(joined).collect(),
@@ -76,8 +82,10 @@ fn facts(tuned: &Tuned) -> Vec<String> {
         ),
         format!("cities of the seeds {}, none of which is reported", seeds.join(", ")),
         format!("least error in {} nominal CPU seconds, set-up in: work counted at rates {rates}", short(*time_s)),
-        format!("{runs} runs on each city for the choice; the best, the next and the default have {runs} fresh ones, that \
-                 nothing was chosen by"),
+        format!(
+            "{runs} runs on each city for the choice; the best, the next and the default have {runs} fresh ones, that \
+                 nothing was chosen by"
+        ),
     ]
 }
 
