@@ -79,10 +79,8 @@ impl Family {
     /// What has no other cities, or none that the camera can stand in.
     pub(super) fn cities(&self, count: usize) -> Result<Vec<(Scene, &SceneOptions)>> {
         let refuse = |why: String| {
-            let file = self.file.display();
-            Error::Invalid(format!(
-                "{file}: {why}; --tune is for recipes with a table [city]: it tunes on cities of other seeds"
-            ))
+            let right = "--tune is for recipes with a table [city]: it tunes on cities of other seeds";
+            Error::Invalid(format!("{why}; {right}"))
         };
         let mut found: Vec<(Scene, &SceneOptions)> = Vec::new();
         let mut failed = None;
@@ -93,7 +91,8 @@ impl Family {
             let options = &self.views[found.len() % self.views.len()];
             match options.of_replicate(Some(seed), None).open(&self.file) {
                 Ok(scene) if self.reported.iter().any(|city| city.hash == scene_hash(&scene)) => {
-                    return Err(refuse("has no generated city: a seed changes nothing".into()));
+                    let file = self.file.display();
+                    return Err(refuse(format!("{file} has no generated city: a seed changes nothing")));
                 }
                 Ok(scene) if self.reported.iter().any(|city| city.seed == scene.seed()) => {}
                 Ok(scene) => found.push((scene, options)),

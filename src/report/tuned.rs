@@ -176,3 +176,82 @@ impl Figures {
         is_shown.then_some(Dot { x, y, low: f64::NAN, high: f64::NAN })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Interval;
+    use crate::record::tuned::{Condition, TUNED_SCHEMA, TuningCity};
+
+    /// A point whose V is the same on both cities, up to a factor of 4.
+    fn point(name: &str, passes: u32, v: f64, out: Option<&str>) -> TunedPoint {
+        let city = |times: f64| OnCity { passes, work_s: 0.1, runs: 6, rel_mse: 10.0 * times * v, v: times * v };
+        TunedPoint {
+            name: name.into(),
+            score: Some(v),
+            chosen_by: None,
+            out: out.map(str::to_owned),
+            cities: vec![city(0.5), city(2.0)],
+        }
+    }
+
+    fn tuned() -> Tuned {
+        let never = TunedPoint { score: None, cities: Vec::new(), ..point("a:k=9", 1, 1.0, Some("one pass is 9 s")) };
+        Tuned {
+            schema: TUNED_SCHEMA,
+            program: None,
+            version: "0.1.0".into(),
+            revision: "67eec73".into(),
+            rates: 1,
+            condition: Condition {
+                recipe: "village".into(),
+                hash: "abcd".into(),
+                lights: 1200,
+                receivers: "spread".into(),
+            },
+            time_s: 0.1,
+            runs: 6,
+            seed: 1,
+            cities: [3, 5].map(|seed| TuningCity { seed, hash: "1".into() }).to_vec(),
+            strategies: vec![TunedStrategy {
+                default: "a".into(),
+                best: Some("a:k=4".into()),
+                gain: Some(Interval { mean: 2.0, low: 1.8, high: 2.2 }),
+                second: None,
+                points: vec![
+                    point("a", 8, 0.02, None),
+                    never,
+                    point("a:k=4", 2, 0.01, None),
+                    point("a:k=2", 2, 0.04, Some("left after 2 runs on each city")),
+                ],
+            }],
+        }
+    }
+
+    #[test]
+    fn points_stand_by_v_with_the_best_and_the_default_marked() {
+        let page = page("village", &tuned(), "plot.svg");
+        let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+        assert_eq!(
+            rows,
+            [
+                "| `a:k=4`<br>best | 2.00 | 0.0500 | 0.200 | 0.0100 | 1.00 |  |",
+                "| `a`<br>default | 8.00 | 0.0125 | 1.60 | 0.0200 | 2.00 ±10 % |  |",
+                "| `a:k=2` | 2.00 | 0.0500 | 0.800 | 0.0400 | 4.00 | left after 2 runs on each city |",
+                "| `a:k=9` | – | – | – | – | – | one pass is 9 s |",
+            ],
+            "{page}"
+        );
+        for said in ["](plot.svg)", "receivers: spread", "seeds 3, 5, none", "revision: 67eec73", "1,200 lights"] {
+            assert!(page.contains(said), "{said}: {page}");
+        }
+    }
+
+    #[test]
+    fn the_plot_names_a_strategy_once_and_is_the_same_each_time() {
+        let svg = plot("village", &tuned()).expect("a plot");
+        assert_eq!(svg, plot("village", &tuned()).expect("a plot"));
+        assert_eq!(svg.matches(">\na\n<").count(), 1, "{svg}");
+        assert_eq!(files("a b"), ["tuned-a-b.md", "frontier-a-b.svg"]);
+    }
+}

@@ -9,6 +9,7 @@
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
 //! | `replicates` | many cities and views of a recipe are scenes of one comparison, and say something together |
+//! | `tuned` | each strategy is compared at its best, found on other cities, and an interrupted search is not done again |
 //! | `export` | exports are written whole or not at all |
 //! | `diff_image` | two pictures are compared by the figures that papers print |
 //! | `stability` | a file of exact values is met, or refused with line and column |
@@ -36,3 +37,4 @@ mod processes;
 mod replicates;
 mod said;
 mod stability;
+mod tuned;
