@@ -10,7 +10,7 @@ use super::replicates::{Entry, ReplicateOptions};
 use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say, width};
 use super::threads::{pool, threads};
-use super::tuning::{TuneOptions, Tuning};
+use super::tuning::{ByFamily, TuneOptions, Tuning};
 use super::values::seconds;
 use crate::base::claim::Claim;
 use crate::base::error::{Error, Result};
@@ -32,7 +32,6 @@ use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
 use crate::visibility::visits::Receivers;
 use clap::Args;
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -178,12 +177,7 @@ impl Session {
     }
 
     /// The strategies of each family of scenes at the parameters that were found for it; none where nothing is tuned.
-    fn tune(
-        &mut self,
-        tuning: &Tuning<'_>,
-        asked: &Asked<'_>,
-        progress: &Progress,
-    ) -> anyhow::Result<HashMap<String, Vec<Configured>>> {
+    fn tune(&mut self, tuning: &Tuning<'_>, asked: &Asked<'_>, progress: &Progress) -> anyhow::Result<ByFamily> {
         let Asked { home, arguments, threads, .. } = *asked;
         let clock = Cpu::new();
         let search = Search {

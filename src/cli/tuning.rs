@@ -66,6 +66,9 @@ pub(super) struct Contestants {
     grids: Vec<Vec<Configured>>,
 }
 
+/// The strategies of each family, at what was found for it.
+pub(super) type ByFamily = HashMap<String, Vec<Configured>>;
+
 /// What is to be tuned, and for which recipes.
 pub(super) struct Tuning<'a> {
     options: &'a TuneOptions,
@@ -163,7 +166,7 @@ impl<'a> Tuning<'a> {
         search: &Search<'_>,
         receivers: Receivers,
         progress: &Progress,
-    ) -> Result<(HashMap<String, Vec<Configured>>, Vec<TunedFamily>)> {
+    ) -> Result<(ByFamily, Vec<TunedFamily>)> {
         let (mut strategies, mut records) = (HashMap::new(), Vec::new());
         for (at, family) in self.families.iter().enumerate() {
             let file = folder.join(&family.tuned_file);

@@ -39,7 +39,7 @@ use crate::base::error::{Error, Result};
 use crate::base::file::write_whole;
 use crate::record::study::Study;
 use crate::record::study_store::{is_study, read_study};
-use crate::record::{ResultFolder, Row, RunRecord, TunedFamily, store};
+use crate::record::{Parameters, ResultFolder, Row, RunRecord, TunedFamily, store};
 use replicates::families;
 use std::fs;
 use std::io::ErrorKind;
@@ -103,7 +103,7 @@ pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
 /// As [`derive`]; what was tuned, where it cannot be read.
 pub(crate) fn derive_all(folder: &Path, run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     let mut files = derive(run, rows)?;
-    for TunedFamily { family, file, .. } in run.parameters.iter().flat_map(|parameters| parameters.tuned()) {
+    for TunedFamily { family, file, .. } in run.parameters.iter().flat_map(Parameters::tuned) {
         let found = crate::record::tuned::read(&folder.join(file))?;
         let [page, plot] = tuned::files(family);
         let text = tuned::page(family, &found, &plot);

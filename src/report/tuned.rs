@@ -42,7 +42,7 @@ pub(super) fn plot(family: &str, tuned: &Tuned) -> Result<String> {
     let (mut joined, mut loose) = (Vec::new(), Vec::new());
     for (nth, strategy) in tuned.strategies.iter().enumerate() {
         let figures = strategy.points.iter().filter_map(|point| Figures::of(&point.cities));
-        let mut points: Vec<Dot> = figures.filter_map(|figures| figures.dot()).collect();
+        let mut points: Vec<Dot> = figures.filter_map(Figures::dot).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let is_beaten = |p: &Dot| points.iter().any(|q| q.x <= p.x && q.y <= p.y && (q.x < p.x || q.y < p.y));
         let (beaten, best) = points.iter().copied().partition(is_beaten);
