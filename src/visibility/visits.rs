@@ -64,16 +64,16 @@ pub(super) fn visited(
     let width = camera.resolution().0;
     let [x, y] = draws.point(FILM).map(f64::from);
     let direction = camera.direction_through(f64::from(pixel % width) + x, f64::from(pixel / width) + y);
-    let seen = surface(look(scene, occluders, camera.position(), direction, pixel))?;
+    let seen = surface(&look(scene, occluders, camera.position(), direction, pixel))?;
     if receivers != Receivers::Bounce {
         return Some(seen);
     }
     let direction = bounced(seen.normal.as_dvec3(), &mut draws);
-    surface(look(scene, occluders, ends.start(&seen), direction, pixel))
+    surface(&look(scene, occluders, ends.start(&seen), direction, pixel))
 }
 
-fn surface(found: Found) -> Option<Receiver> {
-    if let Found::Surface(receiver) = found { Some(receiver) } else { None }
+fn surface(found: &Found) -> Option<Receiver> {
+    if let Found::Surface(receiver) = found { Some(*receiver) } else { None }
 }
 
 /// Names the numbers that decide the points: no run of anybody's.
