@@ -2,7 +2,8 @@
 //!
 //! A record is a file like any other: what its numbers promise is held against one another before anything is made of it.
 
-use super::parameters::Parameters;
+use super::files::file_name;
+use super::parameters::{Parameters, TunedFamily};
 use super::run::RunRecord;
 use super::scene::SceneRecord;
 use super::study::{StudyRecord, TableRecord};
@@ -28,7 +29,7 @@ pub(super) trait Checked {
 impl Checked for RunRecord {
     fn check(&self) -> Result<(), Fault> {
         count("repeats", self.repeats, [1, MOST_RUNS])?;
-        self.parameters.as_ref().map_or(Ok(()), Parameters::check)?;
+        self.parameters.as_ref().map_or(Ok(()), of_parameters)?;
         let mut names = HashSet::new();
         for (at, scene) in self.scenes.iter().enumerate() {
             let place = format!("scenes[{at}]");
@@ -53,6 +54,21 @@ impl Checked for StudyRecord {
         }
         Ok(())
     }
+}
+
+/// Names of files are those that this program gives.
+fn of_parameters(parameters: &Parameters) -> Result<(), Fault> {
+    let (mut names, mut files) = (HashSet::new(), HashSet::new());
+    for (at, TunedFamily { family, file, .. }) in parameters.tuned().iter().enumerate() {
+        let place = format!("parameters.tuned[{at}]");
+        if !names.insert(family) {
+            return Err(wrong(&place, "family", format!("`{family}` is an earlier one's, too")));
+        }
+        if file_name(file) != *file || !file.ends_with(".json") || !files.insert(file) {
+            return Err(wrong(&place, "file", format!("`{file}` is no name of a file of its own; `tuned.json` is")));
+        }
+    }
+    Ok(())
 }
 
 fn of_scene(place: &str, scene: &SceneRecord, repeats: u32) -> Result<(), Fault> {

@@ -1,9 +1,6 @@
 //! How were the parameters of a comparison's strategies chosen?
 
-use super::check::{Fault, wrong};
-use super::files::file_name;
 use serde::{Deserialize, Serialize};
-use std::collections::HashSet;
 
 /// How the parameters of strategies were chosen that may be tried at several.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -34,24 +31,5 @@ impl Parameters {
             Self::AsNamed => &[],
             Self::Tuned(families) => families,
         }
-    }
-
-    /// Looks for what cannot be: names of files are those that this program gives.
-    pub(super) fn check(&self) -> Result<(), Fault> {
-        let (mut names, mut files) = (HashSet::new(), HashSet::new());
-        for (at, TunedFamily { family, file, .. }) in self.tuned().iter().enumerate() {
-            let place = format!("parameters.tuned[{at}]");
-            if !names.insert(family) {
-                return Err(wrong(&place, "family", format!("`{family}` is an earlier one's, too")));
-            }
-            if file_name(file) != *file || !file.ends_with(".json") || !files.insert(file) {
-                return Err(wrong(
-                    &place,
-                    "file",
-                    format!("`{file}` is no name of a file of its own; `tuned.json` is"),
-                ));
-            }
-        }
-        Ok(())
     }
 }
