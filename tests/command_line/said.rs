@@ -132,7 +132,7 @@ fn only_what_is_near_is_called_near() {
         ("render scenes/shadows.toml -o x.png -s influense", "near it: influence", ""),
         ("render scenes/shadows.toml -o x.png -s qqq", "", "there are null, "),
         ("render scenes/shadows.toml -o x.png -s power:qqq=2", "", "there are "),
-        ("study qqq", "", "there are strategies, visible, cutoff, scaling, soft-shadows, offsets"),
+        ("study qqq", "", "there are strategies, visible, elsewhere, cutoff, scaling, soft-shadows, offsets"),
         ("lecture ofsets", "near it: offsets", ""),
         ("compare scenes/shadows.toml --peer qqq", "", "there are cycles, mitsuba"),
         ("export scenes/shadows.toml --to qqq -o x.glb", "", "there are "),
