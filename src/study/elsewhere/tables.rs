@@ -1,6 +1,6 @@
 //! What stands in the tables of `study elsewhere`?
 
-use super::super::columns::{column, interval};
+use super::super::columns::{column, interval, plot};
 use super::CITIES;
 use super::case::Cases;
 use super::together::base;
@@ -17,16 +17,16 @@ pub(super) const OTHERS: [&str; 3] = ["light-tree", "stochastic-cull", "intensit
 
 /// All tables: what all cases say together first.
 pub(super) fn all(cases: &Cases<'_>, grids: &[Vec<Configured>]) -> Vec<TableRecord> {
-    let base = grids[base(grids)][0].name();
-    vec![
+    let names: Vec<&str> = grids.iter().map(|grid| grid[0].name()).collect();
+    let base = names[base(&names)];
+    let mut tables = vec![
         summary("best", &format!("each strategy at its best: V over that of {base}"), base),
         summary("default", &format!("each strategy at its defaults: V over that of {base}"), base),
         over(),
-        loss(),
-        tuned(),
-        grid(),
-        measured(cases),
-    ]
+    ];
+    tables.extend(CONDITIONS.map(|receivers| by_size(receivers, base)));
+    tables.extend([loss(), tuned(), grid(), measured(cases)]);
+    tables
 }
 
 fn group() -> [ColumnRecord; 2] {
@@ -66,6 +66,9 @@ fn summary(name: &str, title: &str, base: &str) -> TableRecord {
                  rows that share a letter are not told apart (paired t tests over all cases, Holm, 5 % in all)."
             ),
             parameters.to_owned(),
+            "where receivers move, errors are of the choice of lights alone: more picks at one receiver then always pay, up to the \
+             most that a grid has, though what a path tracer sees depends on where its paths go as well."
+                .to_owned(),
             "without a rank: not measured in every case, as where a pass takes too long.".to_owned(),
         ],
         plots: Vec::new(),
@@ -90,6 +93,25 @@ fn over() -> TableRecord {
                 .to_owned(),
         ],
         plots: Vec::new(),
+    }
+}
+
+fn by_size(receivers: &str, base: &str) -> TableRecord {
+    let mut columns = vec![column("lights", "lights", Format::Whole), column("strategy", "strategy", Format::Name)];
+    columns.extend(interval("ratio", &format!("V over that\nof {base}"), Format::Number));
+    let drawn = plot(
+        receivers,
+        &format!("{receivers}: V over that of {base}, each at its best"),
+        "strategy",
+        ("lights", "lights"),
+        ("ratio", "V over V, less is better"),
+    );
+    TableRecord {
+        name: receivers.to_owned(),
+        title: format!("{receivers}: each strategy at its best, by the number of lights"),
+        columns,
+        notes: vec![format!("geometric means over {CITIES} cities, with 95 % intervals over them.")],
+        plots: vec![drawn],
     }
 }
 

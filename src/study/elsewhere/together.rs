@@ -23,15 +23,16 @@ pub(super) fn summarise(writer: &mut StudyWriter, grids: &[Vec<Configured>]) -> 
     let cases = Found { table, rows, strategies: &strategies };
     let summaries = KINDS.map(|kind| (kind, summary(&cases, kind)));
     let over = over(&cases);
-    for (kind, rows) in summaries {
-        writer.put(kind, &[], rows)?;
+    let sizes = CONDITIONS.map(|receivers| (receivers, by_size(&cases, receivers)));
+    for (name, rows) in summaries.into_iter().chain(sizes) {
+        writer.put(name, &[], rows)?;
     }
     writer.put("over", &[], over)
 }
 
 /// The strategy that others are held against: the light tree, or where it is not asked for the first.
-pub(super) fn base(grids: &[Vec<Configured>]) -> usize {
-    grids.iter().position(|grid| grid[0].name() == "light-tree").unwrap_or(0)
+pub(super) fn base(strategies: &[&str]) -> usize {
+    strategies.iter().position(|name| *name == "light-tree").unwrap_or(0)
 }
 
 /// What was measured.
@@ -48,6 +49,20 @@ struct Chosen {
 }
 
 impl Found<'_> {
+    /// The numbers of lights, ascending.
+    fn sizes(&self) -> Vec<u64> {
+        let lights = self.rows.iter().filter_map(|row| self.cell(row, "lights").number());
+        let mut sizes: Vec<u64> = lights.map(|lights| lights as u64).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        sizes
+    }
+
+    /// The row of the strategy that others are held against.
+    fn base(&self) -> usize {
+        base(self.strategies)
+    }
+
     fn cell<'r>(&self, row: &'r Cells, column: &str) -> &'r Cell {
         &row[self.table.column(column).expect("a column of this study")]
     }
@@ -81,7 +96,7 @@ impl Found<'_> {
 
 /// A row a strategy, best first: its ratio to the base under each condition and under all, its place and its worst case.
 fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
-    let base = found.strategies.iter().position(|name| *name == "light-tree").unwrap_or(0);
+    let base = found.base();
     let by_condition =
         CONDITIONS.map(|receivers| found.of(kind, |row| *found.cell(row, "receivers") == Cell::from(receivers)));
     let all = found.of(kind, |_| true);
@@ -111,17 +126,29 @@ fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
     order.into_iter().map(row).collect()
 }
 
+/// The ratio of each strategy to the base at each size under a condition, both at their best.
+fn by_size(found: &Found<'_>, receivers: &str) -> Vec<Cells> {
+    let mut rows = Vec::new();
+    for lights in found.sizes() {
+        let of = found.of(KINDS[0], |row| {
+            *found.cell(row, "receivers") == Cell::from(receivers) && *found.cell(row, "lights") == Cell::from(lights)
+        });
+        for (strategy, name) in found.strategies.iter().enumerate() {
+            let mut row: Cells = vec![lights.into(), (*name).into()];
+            row.extend(interval(of.replicates.over(strategy, found.base(), CONFIDENCE)));
+            rows.push(row);
+        }
+    }
+    rows
+}
+
 /// The flagship over its rivals, by condition and size: at defaults and at bests.
 fn over(found: &Found<'_>) -> Vec<Cells> {
     let place = |name: &str| found.strategies.iter().position(|known| *known == name);
     let Some(own) = place("visible") else { return Vec::new() };
-    let mut sizes: Vec<u64> =
-        found.rows.iter().filter_map(|row| found.cell(row, "lights").number()).map(|n| n as u64).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
     let mut rows = Vec::new();
     for receivers in CONDITIONS {
-        for lights in sizes.iter().copied().map(Some).chain([None]) {
+        for lights in found.sizes().into_iter().map(Some).chain([None]) {
             let wanted = |row: &Cells| {
                 *found.cell(row, "receivers") == Cell::from(receivers)
                     && lights.is_none_or(|lights| *found.cell(row, "lights") == Cell::from(lights))
