@@ -106,6 +106,9 @@ fn nothing_lit(target: &Target<'_>, truth: &Truth) -> Option<String> {
         (0, _) => "the camera sees no surface".to_owned(),
         _ if !is_black => return None,
         (_, 0) => "the scene has no lights".to_owned(),
+        _ if target.stage.visits().moves() => {
+            format!("none of {lights} lights reaches what passes visit of the {points} pixels that were looked at")
+        }
         _ => format!("none of {lights} lights reaches any of the {points} visible points that were looked at"),
     };
     Some(format!("nothing can be measured: {why}"))

@@ -155,7 +155,7 @@ impl Reference {
         }
     }
 
-    /// What a reader must know of it: whether the bound of work had a say, and in what.
+    /// What a reader must know of it: whether the bound of work had a say, and in what; and how many visits meet nothing.
     pub(crate) fn notes(&self, target: &Target<'_>, wanted: Wanted) -> Vec<String> {
         let Target { places, frame, .. } = target;
         let bound = format!("{:.0} nominal CPU s (--reference-work)", wanted.work_s);
@@ -164,6 +164,13 @@ impl Reference {
             let (some, all) = (places.len(), frame.len());
             notes.push(format!(
                 "errors are taken at {some} of {all} receivers, spread over the image: with more, the reference would take more than {bound}"
+            ));
+        }
+        if let Some(&most) = target.budgets().last() {
+            let none = 1.0 - self.visits / f64::from(most);
+            notes.push(format!(
+                "{:.1} % of the visits of these pixels in {most} passes meet no surface: they add no light, and no error",
+                100.0 * none
             ));
         }
         let own = self.truth.own_rel_mse();

@@ -8,6 +8,7 @@
 //! | `mutated` | whatever stands in results, vectors and cached references, it is read or refused |
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
+//! | `receivers` | receivers may move from pass to pass, and what cannot be done then is said |
 //! | `replicates` | many cities and views of a recipe are scenes of one comparison, and say something together |
 //! | `export` | exports are written whole or not at all |
 //! | `diff_image` | two pictures are compared by the figures that papers print |
@@ -33,6 +34,7 @@ mod measurable;
 mod mutated;
 mod peers;
 mod processes;
+mod receivers;
 mod replicates;
 mod said;
 mod stability;
