@@ -128,6 +128,71 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::draws::Draws;
+    use crate::scene::Scene;
+    use crate::sources::small;
+    use crate::strategy::{Arguments, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
+    use crate::visibility::offset::Offset;
+    use crate::visibility::stage::{LeaveOut, Stage};
+    use crate::visibility::visits::Receivers;
+
+    /// Learns once, by a hundred candidates, when it first comes to a receiver; then weighs ten lights in each arrival.
+    struct Learning;
+
+    #[derive(Default)]
+    struct Learned(std::sync::OnceLock<()>);
+
+    impl Strategy for Learning {
+        const INFO: Info =
+            Info { name: "learning", summary: "learns once", source: "this test", claim: Claim::Unbiased };
+        type Sampler = Learned;
+
+        fn configure(_: &mut Arguments<'_>) -> Result<Self> {
+            Ok(Self)
+        }
+
+        fn build(&self, _: BuildContext<'_>) -> Result<Learned> {
+            Ok(Learned::default())
+        }
+    }
+
+    impl LightSampler for Learned {
+        type Scratch = ();
+
+        fn arrive<T: Tally>(&self, _: &Receiver, (): &mut (), tally: &mut T) {
+            self.0.get_or_init(|| tally.candidates(1_000_000));
+            tally.weighed(10);
+        }
+
+        fn sample<T: Tally>(&self, _: &Receiver, _: &mut Draws, (): &mut (), out: &mut Picks<'_, T>) {
+            out.push(0, 1.0);
+        }
+
+        fn expected_counts(&self, _: &Receiver, _: &mut [f32]) -> bool {
+            false
+        }
+
+        fn heap_bytes(&self) -> usize {
+            0
+        }
+    }
+
+    #[test]
+    fn what_is_learned_once_is_no_part_of_a_pass() {
+        let strategy = Registry::empty().with::<Learning>().parse("learning").expect("a strategy");
+        for receivers in [Receivers::Centre, Receivers::Spread] {
+            let scene = Scene::new(small::sixteen()).expect("a scene");
+            let stage = Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, receivers);
+            let target = Target::whole(&stage).after([1, 4]);
+            let key = RunKey { seed: 1, run: 0 };
+            let fresh = || strategy.build(BuildContext { stage: &stage, seed: 1 });
+            let work = Work::of_frame(&target, &fresh, key, 4).expect("built");
+            let learned_s = nominal_s(&Counts { candidates: 1_000_000, ..Counts::default() });
+            let frame = target.frame.len() as f64;
+            assert!(work.arrive_s > 0.99 * learned_s, "{work:?}, learning {learned_s}");
+            assert!(work.pass_s < 300e-9 * frame, "{work:?} of {frame} receivers");
+        }
+    }
 
     #[test]
     fn passes_come_next_to_a_time_from_either_side() {

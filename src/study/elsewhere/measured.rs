@@ -105,7 +105,8 @@ fn figures(runs: &Runs, work: &Affordable, time_s: f64, target: &Target<'_>, ref
     let seconds = || mean(&rows, Row::total_cpu_s);
     let v = Figure::of(vec![error(&rows), seconds()], |parts| parts[0] * parts[1]);
     let (counted_s, own) = (work.seconds(*passes), reference.truth.after(*passes).own_rel_mse());
-    let mut row: Cells = vec![u64::from(*passes).into(), (target.places.len() as u64).into(), own.into(), counted_s.into()];
+    let mut row: Cells =
+        vec![u64::from(*passes).into(), (target.places.len() as u64).into(), own.into(), counted_s.into()];
     row.extend(cells(error(&rows).interval()));
     row.extend(cells(seconds().interval()));
     row.extend(cells(v.interval()));

@@ -106,7 +106,11 @@ fn over_other(found: &TunedStrategy) -> Option<Interval> {
     let [first, other] = &found.points[..] else { return None };
     let told = found.second.as_ref().map(|second| second.over_best).map(|Interval { mean, low, high }| {
         let is_first = found.best.as_ref() == Some(&found.default);
-        if is_first { Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low } } else { Interval { mean, low, high } }
+        if is_first {
+            Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low }
+        } else {
+            Interval { mean, low, high }
+        }
     });
     let known = || Some(Interval { mean: first.score? / other.score?, ..Interval::NONE });
     told.or_else(known)
