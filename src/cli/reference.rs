@@ -8,6 +8,7 @@ use super::scene::{SceneOptions, receivers};
 use super::terminal::{print, say};
 use super::threads::{pool, threads};
 use super::values::seconds;
+use crate::base::error::Error;
 use crate::measure::reference::{Reference, WORK_S, Wanted};
 use crate::measure::target::Target;
 use crate::visibility::visits::Receivers;
@@ -51,6 +52,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
     pool(arguments.threads)?.install(|| {
         let stage = arguments.scene_options.stage_visiting(&arguments.scene, arguments.receivers)?;
         progress.scene(stage.scene().name());
+        let visits = stage.receivers().len() as u64 * u64::from(arguments.passes);
+        if arguments.receivers.moves() && visits > MOST_VISITS {
+            let (pixels, passes) = (stage.receivers().len(), arguments.passes);
+            return Err(Error::Invalid(format!(
+                "{passes} passes of {pixels} pixels are {visits} receivers; at most 2^24 are held at once: fewer --passes or a \
+                 smaller --resolution are right"
+            ))
+            .into());
+        }
         let target = Target::whole(&stage).after([arguments.passes]);
         // A picture needs every pixel.
         let fewest = target.places.len();
@@ -74,6 +84,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<Outcome> {
         Ok(Outcome::Done)
     })
 }
+
+/// Most receivers of all passes: 170 bytes are held of each.
+const MOST_VISITS: u64 = 1 << 24;
 
 fn noise(text: &str) -> Result<f64, String> {
     text.parse()

@@ -52,7 +52,10 @@ impl ReplicateOptions {
             self.add(file, options, &mut entries)?;
             let same =
                 |(i, entry): (usize, &Entry)| entries[of_file..][..i].iter().any(|other| other.hash == entry.hash);
-            if entries[of_file..].iter().enumerate().any(same) {
+            // Of one city alone another says whether a seed changes anything.
+            let lone =
+                if self.cities == Some(1) { Some(self.another(file, options, &entries[of_file])?) } else { None };
+            if lone == Some(false) || entries[of_file..].iter().enumerate().any(same) {
                 let text = "has no generated city: a seed changes nothing; --cities is for recipes with a table [city]";
                 return Err(Error::Invalid(format!("{} {text}", file.display())));
             }
@@ -64,6 +67,12 @@ impl ReplicateOptions {
             }
             None => Ok(entries),
         }
+    }
+
+    /// Whether a file makes another city of another seed.
+    fn another(&self, file: &Path, options: &SceneOptions, of: &Entry) -> Result<bool> {
+        let seed = of.options.seed().map_or(1, |seed| seed ^ 1);
+        Ok(scene_hash(&options.of_replicate(Some(seed), of.options.view()).open(file)?) != of.hash)
     }
 
     /// The cities and views of one file.

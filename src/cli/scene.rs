@@ -110,6 +110,11 @@ impl SceneOptions {
         Self { scene_seed: None, ..self.clone() }
     }
 
+    /// The seed that is asked for in place of a recipe's own.
+    pub(super) fn seed(&self) -> Option<u64> {
+        self.scene_seed
+    }
+
     /// The view that is asked for in place of a recipe's camera.
     pub(super) fn view(&self) -> Option<View> {
         self.view

@@ -146,7 +146,7 @@ fn verify(
     let lights = stage.scene().lights().len();
     print(&format!("{}: {lights} lights, {} receivers\n", scene.name(), stage.receivers().len()))?;
     if verifier.dim() > 0 {
-        let all = options.receivers.min(stage.receivers().len());
+        let all = verifier.looked_at();
         let dim = verifier.dim();
         print(&format!("  {dim} of {all} receivers get no more light than rounding may make: no statistics there\n"))?;
     }

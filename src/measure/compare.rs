@@ -9,7 +9,7 @@ use super::image_store::ImageStore;
 use super::observer::Observer;
 use super::oracle;
 use super::plan::{self, Pilot};
-use super::reference::{Reference, Wanted, scene_hash};
+use super::reference::{self, Reference, Wanted, scene_hash};
 use super::summary::{self, bias};
 use super::target::Target;
 use crate::base::claim::Claim;
@@ -57,11 +57,14 @@ pub(crate) fn compare<'a>(
         let pilot = pilot.as_ref().and_then(|pilot| pilot.as_ref().ok());
         pilot.map_or_else(Vec::new, |pilot| pilot.ladder(options.budget, options.repeats))
     };
-    let ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
+    let mut ladders: Vec<Vec<u32>> = pilots.iter().map(ladder).collect();
+    let most = reference::most_passes(&frame, options.reference_work_s);
+    let cut = ladders.iter().flatten().any(|&passes| passes > most);
+    ladders.iter_mut().for_each(|ladder| ladder.retain(|&passes| passes <= most));
     let wanted = Wanted { work_s: options.reference_work_s, ..Wanted::new(accuracy(options, &pilots, &ladders)) };
     let frame = frame.after(ladders.concat());
     let (target, reference) = Reference::bounded(&frame, wanted, options.cache, watch)?;
-    if let Some(why) = nothing_lit(&target, &reference.truth) {
+    if let Some(why) = nothing_lit(&target, &reference) {
         return Ok(unmeasured(target, file, reference, wanted, options, why));
     }
 
@@ -92,20 +95,38 @@ pub(crate) fn compare<'a>(
     let headline = headline::settle(&mut entries.collect::<Vec<_>>());
     oracle::settle(&target, &reference.truth, options, &runs, &mut summaries, watch)?;
 
-    let notes = notes(&target, &reference, wanted, account.stray_share());
+    let mut notes = notes(&target, &reference, wanted, account.stray_share());
+    if cut {
+        notes.push(format!(
+            "no strategy goes beyond {most} passes: the truth at all that more of them visit would take more than {:.0} nominal CPU \
+             s (--reference-work)",
+            wanted.work_s
+        ));
+    }
     let scene = record(&target, file, &reference, &headline, notes, summaries);
     let rows = runs.into_iter().flat_map(|runs| runs.rows).collect();
     Ok(Compared { scene, rows, target, truth: reference.truth, nothing: None })
 }
 
 /// Why no error can be measured: the camera sees no surface, or no light reaches one that it sees.
-fn nothing_lit(target: &Target<'_>, truth: &Truth) -> Option<String> {
+fn nothing_lit(target: &Target<'_>, reference: &Reference) -> Option<String> {
     let (points, lights) = (target.places.len(), target.stage.scene().lights().len());
-    let is_black = truth.mean().iter().all(|&radiance| radiance == Vec3::ZERO);
+    let is_black = reference.truth.mean().iter().all(|&radiance| radiance == Vec3::ZERO);
+    let moves = target.stage.visits().moves();
+    if moves && target.budgets().is_empty() {
+        // Nobody can afford a pass, and every row says so.
+        return None;
+    }
     let why = match (points, lights) {
         (0, _) => "the camera sees no surface".to_owned(),
         _ if !is_black => return None,
         (_, 0) => "the scene has no lights".to_owned(),
+        _ if moves && reference.visits == 0.0 => {
+            format!("no pass of the {points} pixels that were looked at meets a surface")
+        }
+        _ if moves => {
+            format!("none of {lights} lights reaches what passes visit of the {points} pixels that were looked at")
+        }
         _ => format!("none of {lights} lights reaches any of the {points} visible points that were looked at"),
     };
     Some(format!("nothing can be measured: {why}"))

@@ -6,11 +6,12 @@
 use super::target::{Target, squares};
 use super::work::{nominal_s, setup_s};
 use crate::base::counts::Counts;
+use crate::base::error::Result;
 use crate::base::random::RunKey;
 use crate::render::film::Film;
 use crate::render::passes::Plan;
 use crate::scene::receiver::Receiver;
-use crate::strategy::AnySampler;
+use crate::strategy::{AnySampler, BuildContext, Configured};
 
 /// Nominal seconds of a strategy's parts on a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,12 @@ pub(crate) struct Work {
     pub counts: Counts,
 }
 
+/// A strategy is too dear where its first image takes more than so many times the time.
+const DEAREST: f64 = 4.0;
+
+/// Passes that work is counted over.
+const COUNTED: u32 = 3;
+
 /// How many times dearer than it is a strategy may seem at some squares of the frame: room for those that share work among
 /// neighbours further apart than a square, as `visible`.
 const SEEMING: f64 = 3.0;
@@ -32,23 +39,34 @@ const SEEMING: f64 = 3.0;
 /// Work is counted at so many squares of the frame: a strategy may share what it does among neighbours.
 const SQUARES: usize = 16;
 
+/// Builds a sampler that nothing was asked of yet.
+pub(crate) type Fresh<'a> = &'a dyn Fn() -> Result<Box<dyn AnySampler>>;
+
 impl Work {
     /// Counted over so many passes, at least two, at some squares of a target's frame; at all of it for a sampler that
     /// draws state for a pass or looks at its whole frame.
     ///
     /// What neighbours share who are further apart than a square, it takes for dearer than it is.
-    pub(crate) fn at_squares(target: &Target<'_>, sampler: &dyn AnySampler, key: RunKey, passes: u32) -> Self {
-        if sampler.most_passes() == 1 {
-            return Self::of_frame(target, sampler, key, passes);
-        }
-        Self::counted(target, &squares(&target.frame, SQUARES), sampler, key, passes)
+    ///
+    /// # Errors
+    /// A sampler that cannot be built.
+    pub(crate) fn at_squares(target: &Target<'_>, fresh: Fresh<'_>, key: RunKey, passes: u32) -> Result<Self> {
+        let sampler = fresh()?;
+        let whole = sampler.most_passes() == 1;
+        let some = if whole { target.frame.to_vec() } else { squares(&target.frame, SQUARES) };
+        Ok(Self::counted(target, &some, &*sampler, key, passes))
     }
 
     /// Counted over so many passes, at least two, of a target's whole frame.
-    pub(crate) fn of_frame(target: &Target<'_>, sampler: &dyn AnySampler, key: RunKey, passes: u32) -> Self {
-        Self::counted(target, &target.frame, sampler, key, passes)
+    ///
+    /// # Errors
+    /// A sampler that cannot be built.
+    pub(crate) fn of_frame(target: &Target<'_>, fresh: Fresh<'_>, key: RunKey, passes: u32) -> Result<Self> {
+        Ok(Self::counted(target, &target.frame, &*fresh()?, key, passes))
     }
 
+    /// What a sampler does that nothing was asked of yet. One that learns as receivers come does so once, in the first
+    /// pass: what that takes beyond the same pass made again is no part of a pass.
     fn counted(
         target: &Target<'_>,
         receivers: &[Receiver],
@@ -56,19 +74,20 @@ impl Work {
         key: RunKey,
         passes: u32,
     ) -> Self {
+        let setup_s = setup_s(sampler.heap_bytes());
         let plan = Plan { stage: target.stage, receivers, sampler, key };
         let count = |passes| plan.run_counting(passes, &mut Film::new(receivers.len()));
         let scale = target.frame.len() as f64 / receivers.len().max(1) as f64;
-        let setup_s = setup_s(sampler.heap_bytes());
+        let seconds = |counts: &Counts| nominal_s(counts) * scale;
+        let first = seconds(&count(1));
         let counts = count(passes);
-        // State of one pass is drawn anew for each, and so is every arrival.
-        if sampler.most_passes() == 1 {
-            let pass_s = nominal_s(&counts) * scale / f64::from(passes);
-            return Self { setup_s, arrive_s: 0.0, pass_s, counts };
-        }
-        let one = nominal_s(&count(1)) * scale;
-        let pass_s = ((nominal_s(&counts) * scale - one) / f64::from(passes - 1)).max(0.0);
-        Self { setup_s, arrive_s: (one - pass_s).max(0.0), pass_s, counts }
+        // State of one pass is drawn anew for each, and so is every arrival; where receivers move, every pass arrives.
+        let pass_s = if sampler.most_passes() == 1 || target.stage.visits().moves() {
+            seconds(&counts) / f64::from(passes)
+        } else {
+            ((seconds(&counts) - seconds(&count(1))) / f64::from(passes - 1)).max(0.0)
+        };
+        Self { setup_s, arrive_s: (first - pass_s).max(0.0), pass_s, counts }
     }
 
     /// Nominal seconds from nothing to the image of so many passes in one block.
@@ -76,26 +95,30 @@ impl Work {
         self.setup_s + self.arrive_s + f64::from(passes) * self.pass_s
     }
 
-    /// Counted over so many passes of a target's whole frame, if the first takes no more than so many nominal seconds, set-up
-    /// in; what it takes if it takes more.
-    pub(crate) fn affordable(
+    /// The number of passes, of those allowed, whose work comes next to `time_s` on a target's frame, and that work; or why
+    /// there is none.
+    pub(crate) fn next_to(
         target: &Target<'_>,
-        sampler: &dyn AnySampler,
+        strategy: &Configured,
         key: RunKey,
-        passes: u32,
-        most_s: f64,
-    ) -> Result<Self, f64> {
-        let within = |work: Self, times: f64| {
+        time_s: f64,
+        allowed: &[u32],
+    ) -> std::result::Result<(u32, Self), String> {
+        let build = || strategy.build(BuildContext { stage: target.stage, seed: key.seed });
+        let within = |work: Result<Self>, times: f64| {
+            let work = work.map_err(|error| error.to_string())?;
             let first_s = work.seconds(1);
-            if first_s > times * most_s { Err(first_s) } else { Ok(work) }
+            let dear = format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {time_s} s");
+            if first_s > times * DEAREST * time_s { Err(dear) } else { Ok(work) }
         };
         // Counting a whole frame of what takes a hundred times that would take as long.
-        within(Self::at_squares(target, sampler, key, passes), SEEMING)?;
-        within(Self::of_frame(target, sampler, key, passes), 1.0)
+        within(Self::at_squares(target, &build, key, COUNTED), SEEMING)?;
+        let work = within(Self::of_frame(target, &build, key, COUNTED), 1.0)?;
+        Ok((work.passes_next_to(time_s, allowed), work))
     }
 
     /// The number of passes whose nominal seconds come next to `seconds`, among those allowed: ascending, at least one.
-    pub(crate) fn passes_next_to(&self, seconds: f64, allowed: &[u32]) -> u32 {
+    fn passes_next_to(&self, seconds: f64, allowed: &[u32]) -> u32 {
         let off = |passes: u32| (self.seconds(passes) - seconds).abs();
         // Of equals the most: what takes nothing may do as much as it can.
         allowed.iter().copied().rev().min_by(|&a, &b| off(a).total_cmp(&off(b))).expect("a number of passes")
@@ -105,6 +128,71 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::draws::Draws;
+    use crate::scene::Scene;
+    use crate::sources::small;
+    use crate::strategy::{Arguments, Claim, Info, LightSampler, Picks, Registry, Strategy, Tally};
+    use crate::visibility::offset::Offset;
+    use crate::visibility::stage::{LeaveOut, Stage};
+    use crate::visibility::visits::Receivers;
+
+    /// Learns once, by a hundred candidates, when it first comes to a receiver; then weighs ten lights in each arrival.
+    struct Learning;
+
+    #[derive(Default)]
+    struct Learned(std::sync::OnceLock<()>);
+
+    impl Strategy for Learning {
+        const INFO: Info =
+            Info { name: "learning", summary: "learns once", source: "this test", claim: Claim::Unbiased };
+        type Sampler = Learned;
+
+        fn configure(_: &mut Arguments<'_>) -> Result<Self> {
+            Ok(Self)
+        }
+
+        fn build(&self, _: BuildContext<'_>) -> Result<Learned> {
+            Ok(Learned::default())
+        }
+    }
+
+    impl LightSampler for Learned {
+        type Scratch = ();
+
+        fn arrive<T: Tally>(&self, _: &Receiver, (): &mut (), tally: &mut T) {
+            self.0.get_or_init(|| tally.candidates(1_000_000));
+            tally.weighed(10);
+        }
+
+        fn sample<T: Tally>(&self, _: &Receiver, _: &mut Draws, (): &mut (), out: &mut Picks<'_, T>) {
+            out.push(0, 1.0);
+        }
+
+        fn expected_counts(&self, _: &Receiver, _: &mut [f32]) -> bool {
+            false
+        }
+
+        fn heap_bytes(&self) -> usize {
+            0
+        }
+    }
+
+    #[test]
+    fn what_is_learned_once_is_no_part_of_a_pass() {
+        let strategy = Registry::empty().with::<Learning>().parse("learning").expect("a strategy");
+        for receivers in [Receivers::Centre, Receivers::Spread] {
+            let scene = Scene::new(small::sixteen()).expect("a scene");
+            let stage = Stage::visiting(scene, LeaveOut::Yes, Offset::SCALED, receivers);
+            let target = Target::whole(&stage).after([1, 4]);
+            let key = RunKey { seed: 1, run: 0 };
+            let fresh = || strategy.build(BuildContext { stage: &stage, seed: 1 });
+            let work = Work::of_frame(&target, &fresh, key, 4).expect("built");
+            let learned_s = nominal_s(&Counts { candidates: 1_000_000, ..Counts::default() });
+            let frame = target.frame.len() as f64;
+            assert!(work.arrive_s > 0.99 * learned_s, "{work:?}, learning {learned_s}");
+            assert!(work.pass_s < 300e-9 * frame, "{work:?} of {frame} receivers");
+        }
+    }
 
     #[test]
     fn passes_come_next_to_a_time_from_either_side() {

@@ -122,7 +122,8 @@ impl Pilot {
         let measured = target.places.len().max(1) as f64;
         let energy_variance = if energy > 0.0 { of_pixel / (measured * energy * energy) } else { 0.0 };
         let key = RunKey { seed: !seed, run: 3 };
-        let Work { arrive_s, pass_s, counts, .. } = Work::at_squares(target, sampler.as_ref(), key, PASSES);
+        let fresh = || strategy.build(BuildContext { stage: target.stage, seed });
+        let Work { arrive_s, pass_s, counts, .. } = Work::at_squares(target, &fresh, key, PASSES)?;
         Ok(Self {
             arrive_s,
             pass_s,

@@ -33,7 +33,7 @@ pub(crate) struct Reference {
     /// Whether it is a sum without noise.
     pub exact_sum: bool,
     /// Receivers of a measured place: 1 where they stay, those of all passes where they move.
-    visits: f64,
+    pub visits: f64,
     /// Shadow rays cast, those included that said how many are needed.
     pub rays: u64,
     /// Counted work of all that, in nominal CPU seconds: see [`RAY_S`].
@@ -79,11 +79,22 @@ pub(crate) const FEWEST: usize = 256;
 /// Places that are always measured, where there are so many and each has receivers of many passes.
 const FEWEST_MOVING: usize = 64;
 
+/// The most passes whose visits the work of a reference allows at the fewest places, one ray a light at each; any number
+/// where receivers stay. Four at least: a comparison needs some.
+pub(crate) fn most_passes(target: &Target<'_>, work_s: f64) -> u32 {
+    if !target.stage.visits().moves() {
+        return u32::MAX;
+    }
+    let lights = target.stage.scene().lights().len().max(1) as f64;
+    let a_pass = FEWEST_MOVING.min(target.places.len()).max(1) as f64 * lights * (RAY_S + LIGHT_S);
+    ((work_s / a_pass) as u32).max(4)
+}
+
 fn fewest(target: &Target<'_>) -> usize {
     if target.stage.visits().moves() { FEWEST_MOVING } else { FEWEST }
 }
 
-/// Part of the hash: to be raised whenever `render::refined` gives other numbers.
+/// Part of the hash: to be raised whenever `render::refined` gives other numbers, or `visibility::visits` other receivers.
 const VERSION: u32 = 3;
 
 /// Names the reference's random numbers; never a run's.
@@ -155,7 +166,7 @@ impl Reference {
         }
     }
 
-    /// What a reader must know of it: whether the bound of work had a say, and in what.
+    /// What a reader must know of it: whether the bound of work had a say, and in what; and how many visits meet nothing.
     pub(crate) fn notes(&self, target: &Target<'_>, wanted: Wanted) -> Vec<String> {
         let Target { places, frame, .. } = target;
         let bound = format!("{:.0} nominal CPU s (--reference-work)", wanted.work_s);
@@ -164,6 +175,13 @@ impl Reference {
             let (some, all) = (places.len(), frame.len());
             notes.push(format!(
                 "errors are taken at {some} of {all} receivers, spread over the image: with more, the reference would take more than {bound}"
+            ));
+        }
+        if let Some(&most) = target.budgets().last() {
+            let none = 1.0 - self.visits / f64::from(most);
+            notes.push(format!(
+                "{:.1} % of the visits of these pixels in {most} passes meet no surface: they add no light, and no error",
+                100.0 * none
             ));
         }
         let own = self.truth.own_rel_mse();

@@ -98,7 +98,16 @@ fn sheets(study: &Study) -> impl Iterator<Item = Sheet> {
     study.record.tables.iter().zip(&study.rows).map(|(table, rows)| sheet(table, rows))
 }
 
+/// Rows of the longest table that a page or a terminal shows; of a longer one stands there which file holds them.
+const LONGEST: usize = 150;
+
 fn sheet(table: &TableRecord, rows: &[Cells]) -> Sheet {
+    if rows.len() > LONGEST {
+        let file = format!("{}.csv", store::file_name(&table.name));
+        let cells = vec![Entry::Text(file), Entry::Text(grouped(rows.len() as u64))];
+        let (heads, lines) = (vec![Head::left("file"), Head::right("rows")], vec![Line { cells, group: 0 }]);
+        return Sheet { title: table.title.clone(), heads, lines, below: table.notes.clone() };
+    }
     // A column that says nothing in any row is left out.
     let is_empty = |at: usize| !rows.is_empty() && rows.iter().all(|cells| cells[at] == Cell::Missing);
     let is_shown = |(at, column): &(usize, &ColumnRecord)| !column.format.is_end() && !is_empty(*at);

@@ -48,7 +48,23 @@ pub(super) fn impossible(subject: &Subject<'_>) -> Impossible {
             });
         });
     }
+    if subject.stage.visits().moves() {
+        // Films visit other places in each pass.
+        let plan = plan(subject, subject.receivers);
+        for visit in plan.visits(PASSES, &mut Film::new(subject.receivers.len())) {
+            let frame = Frame::new(&visit.receivers, subject.key(0));
+            calls::visit(subject.sampler, frame, &visit.receivers, visit.passes.clone(), false, |i, _, call| {
+                call.iter().for_each(|pick| {
+                    found.look(pick, visit.receivers[i].pixel, lights);
+                });
+            });
+        }
+    }
     found
+}
+
+fn plan<'s>(subject: &Subject<'s>, receivers: &'s [Receiver]) -> Plan<'s> {
+    Plan { stage: subject.stage, receivers, sampler: subject.sampler, key: subject.key(0) }
 }
 
 /// The checks that need no statistics.
@@ -87,7 +103,7 @@ fn same_seed(subject: &Subject<'_>) -> Check {
 /// One thread, two threads and a split of the passes: the same bytes.
 fn threads(subject: &Subject<'_>) -> Check {
     let receivers = rendered(subject);
-    let plan = Plan { stage: subject.stage, receivers: &receivers, sampler: subject.sampler, key: subject.key(0) };
+    let plan = plan(subject, &receivers);
     let film = |run: &dyn Fn(&mut Film)| {
         let mut film = Film::new(receivers.len());
         run(&mut film);
@@ -110,7 +126,7 @@ fn threads(subject: &Subject<'_>) -> Check {
 /// The renderer's film against the same picks shaded one by one, every kind compiled in and every ray cast.
 fn replay(subject: &Subject<'_>) -> Check {
     let (stage, receivers) = (subject.stage, subject.receivers);
-    let plan = Plan { stage, receivers, sampler: subject.sampler, key: subject.key(0) };
+    let plan = plan(subject, receivers);
     let (mut film, mut singly) = (Film::new(receivers.len()), Film::new(receivers.len()));
     plan.run(PASSES, &mut film);
     let lights = stage.scene().lights();

@@ -25,7 +25,9 @@ pub(super) fn moved(subject: &Subject<'_>) -> Check {
     }
     let (mut differ, mut first) = (0, None);
     for (at, other) in receivers.iter().zip(receivers.iter().cycle().skip(1)) {
-        let before = Receiver { pixel: at.pixel, ..*other };
+        // What a pixel's next pass visits; where receivers stay or that is nowhere, what another pixel sees.
+        let next = subject.stage.visits().moves().then(|| subject.stage.visited(at, 1)).flatten();
+        let before = next.unwrap_or(Receiver { pixel: at.pixel, ..*other });
         let serve = |receivers: &[Receiver]| {
             choices(subject.sampler, Frame::new(subject.frame, subject.key(0)), receivers, 0..PASSES)
         };

@@ -71,6 +71,11 @@ impl<'a> Verifier<'a> {
         self.receivers.len() - self.bright
     }
 
+    /// How many receivers are looked at.
+    pub(crate) fn looked_at(&self) -> usize {
+        self.receivers.len()
+    }
+
     /// What each light adds, at each receiver.
     #[cfg(test)]
     pub(crate) fn truths(&self) -> &[Truth] {

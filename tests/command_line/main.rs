@@ -8,6 +8,7 @@
 //! | `mutated` | whatever stands in results, vectors and cached references, it is read or refused |
 //! | `lecture` | each chapter of the lecture has a command that makes its labelled picture |
 //! | `peers` | another renderer's images become rows like any other, whatever it does |
+//! | `receivers` | receivers may move from pass to pass, and what cannot be done then is said |
 //! | `replicates` | many cities and views of a recipe are scenes of one comparison, and say something together |
 //! | `tuned` | each strategy is compared at its best, found on other cities, and an interrupted search is not done again |
 //! | `export` | exports are written whole or not at all |
@@ -34,6 +35,7 @@ mod measurable;
 mod mutated;
 mod peers;
 mod processes;
+mod receivers;
 mod replicates;
 mod said;
 mod stability;

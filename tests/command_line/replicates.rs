@@ -24,6 +24,7 @@ fn replicates_that_cannot_be_are_refused() {
     let first = "compare scenes/first-night.toml --out no/such/folder";
     refused("compare scenes/plaza.toml --views street,roof", &["scenes/plaza.toml", "`city`", "street, roof, sky"]);
     refused("compare scenes/plaza.toml --cities 2", &["scenes/plaza.toml", "no generated city", "[city]"]);
+    refused("compare scenes/plaza.toml --cities 1", &["scenes/plaza.toml", "no generated city", "[city]"]);
     refused(&format!("{first} --cities 0"), &["--cities", "1..="]);
     refused(&format!("{first} --views street,rof"), &["rof", "street, roof, sky", "near it: roof"]);
     refused(&format!("{first} --views sky,sky"), &["`sky`", "twice"]);
@@ -42,6 +43,7 @@ fn replicates_that_cannot_be_are_refused() {
     };
     of_gltf(&["--views", "sky"]).stderr(contains("street, roof, sky"));
     of_gltf(&["--cities", "2"]).stderr(contains("seed"));
+    of_gltf(&["--cities", "1"]).stderr(contains("seed"));
 }
 
 fn read(folder: &Path, file: &str) -> String {

@@ -385,6 +385,66 @@ fn each_step_to_what_places_see_stands_beside_the_first() {
     assert_eq!(cells(&study, "sweep", "light-tree", "to_first").len(), 2, "two scenes");
 }
 
+#[test]
+fn every_strategy_is_measured_elsewhere_at_its_best_and_at_its_defaults() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let few = StudyOptions {
+        overrides: Overrides { resolution: Some((16, 9)), ..Overrides::default() },
+        pixels: Some(4),
+        seconds: 0.01,
+        repeats: 4,
+        ..options(folder.path(), "power:picks={1,4},light-tree:picks={1,2},visible:picks={1,2}")
+    };
+    let refused = |options: &StudyOptions| -> String {
+        let run = study::find("elsewhere").expect("known").run(options, String::new(), &|| unreachable!(), &Unobserved);
+        run.expect_err("refused").to_string()
+    };
+    let with = |strategies: &str| StudyOptions { strategies: Some(strategies.into()), ..few.clone() };
+    assert!(refused(&with("influence")).contains("unbiased"));
+    assert!(refused(&with("power:picks={}")).contains("power:picks={}"));
+    let scenes = |files: &[&str]| StudyOptions { scenes: files.iter().map(Into::into).collect(), ..few.clone() };
+    assert!(refused(&scenes(&["scenes/plaza.toml"])).contains("city"), "{}", refused(&scenes(&["scenes/plaza.toml"])));
+    assert!(refused(&scenes(&["scenes/downtown.toml", "scenes/stadium.toml"])).contains("a single --scene"));
+
+    let study = ran("elsewhere", &few, folder.path());
+    let rows = |table: &str| {
+        let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");
+        (&study.record.tables[at], &study.rows[at])
+    };
+    // Three conditions, five cities, three strategies, at their best and at their defaults.
+    let (table, cases) = rows("cases");
+    assert_eq!(cases.len(), 3 * 5 * 3 * 2);
+    let at = |column: &str| table.column(column).expect("a column");
+    let texts = |column: &str| -> Vec<&Cell> { cases.iter().map(|row| &row[at(column)]).collect() };
+    for view in ["street", "roof", "sky"] {
+        assert!(texts("view").contains(&&view.into()));
+    }
+    let v = at("v");
+    assert!(cases.iter().all(|row| row[v].number().is_some_and(|v| v > 0.0)), "{cases:?}");
+    // No city that parameters were found on is reported: seeds are those of the recipe and the four after it.
+    let mut seeds: Vec<f64> = cases.iter().filter_map(|row| row[at("seed")].number()).collect();
+    seeds.sort_by(f64::total_cmp);
+    seeds.dedup();
+    assert_eq!(seeds, [17.0, 18.0, 19.0, 20.0, 21.0]);
+    for table in ["best", "default"] {
+        for column in ["ratio_centre", "ratio_spread", "ratio_bounce", "ratio_all"] {
+            assert_eq!(cells(&study, table, "light-tree", column)[0].number(), Some(1.0), "{table} {column}");
+        }
+        assert_eq!(*cells(&study, table, "visible", "cases")[0], Cell::Whole(15));
+    }
+    // The ratio of the table is that of its cases.
+    let logs: Vec<f64> = ["visible", "light-tree"]
+        .map(|strategy| {
+            let own = |row: &&Vec<Cell>| row[at("strategy")] == strategy.into() && row[at("at")] == "best".into();
+            let logs: Vec<f64> = cases.iter().filter(own).filter_map(|row| row[v].number()).map(f64::ln).collect();
+            logs.iter().sum::<f64>() / logs.len() as f64
+        })
+        .to_vec();
+    let ratio = cells(&study, "best", "visible", "ratio_all")[0].number().expect("measured");
+    assert!((ratio / (logs[0] - logs[1]).exp() - 1.0).abs() < 1e-9, "{ratio}");
+    assert_eq!(rows("loss").1.len(), 3 * 3, "for the one size");
+}
+
 /// The figure of a policy in a table of the study of offsets.
 fn offset_figure(study: &Study, table: &str, distance: Option<u64>, policy: &str, column: &str) -> Option<f64> {
     let at = study.record.tables.iter().position(|t| t.name == table).expect("the table");

@@ -29,7 +29,7 @@ use crate::base::error::{Error, Result};
 use crate::base::random::{RunKey, hash};
 use crate::record::tuned::{Condition, Second, TUNED_SCHEMA, Tuned, TunedStrategy, TuningCity};
 use crate::record::{Program, environment};
-use crate::strategy::{BuildContext, Configured};
+use crate::strategy::Configured;
 use point::{Point, over};
 
 /// A city to tune on.
@@ -76,12 +76,6 @@ const ROUNDS: [Round; 3] = [
 /// `light-tree` on two cities like downtown: after one run the least score was half of what fresh runs gave any point, and 2
 /// picks were left at 2.2 times it, though their own score was within a tenth of the default's by fresh runs.
 const FEWEST: u32 = 2;
-
-/// A point is too dear where its first image takes more than so many times the time.
-const DEAREST: f64 = 4.0;
-
-/// Passes that work is counted over.
-const COUNTED: u32 = 2;
 
 /// Names the random numbers of the runs that no point is chosen by.
 const FRESH: u64 = u64::from_le_bytes(*b"no choic");
@@ -165,7 +159,7 @@ impl Tuner<'_> {
     fn counted<'g>(&self, grid: &'g [Configured], watch: &dyn Observer) -> Result<Vec<Point<'g>>> {
         let pairs = grid.iter().enumerate().flat_map(|(i, _)| (0..self.cities.len()).map(move |city| (i, city)));
         let units: Vec<(usize, usize)> = pairs.collect();
-        let mut works: Vec<Vec<Option<Work>>> = grid.iter().map(|_| vec![None; self.cities.len()]).collect();
+        let mut works: Vec<Vec<Option<(u32, Work)>>> = grid.iter().map(|_| vec![None; self.cities.len()]).collect();
         let mut points: Vec<Point<'g>> = grid.iter().map(|point| Point::new(point, self.cities.len())).collect();
         let work = |&(i, city): &(usize, usize), _: super::engine::Meter<'_>| Ok(self.work(&grid[i], city));
         self.engine.run("counting", &units, watch, work, |&(i, city), found| {
@@ -177,24 +171,18 @@ impl Tuner<'_> {
             Ok(())
         })?;
         for (point, works) in points.iter_mut().zip(works) {
-            if let Some(works) = works.into_iter().collect::<Option<Vec<Work>>>() {
-                point.passes = works.iter().map(|work| work.passes_next_to(self.time_s, self.passes)).collect();
-                point.seconds = works.iter().zip(&point.passes).map(|(work, &n)| work.seconds(n)).collect();
+            if let Some(works) = works.into_iter().collect::<Option<Vec<(u32, Work)>>>() {
+                point.passes = works.iter().map(|&(passes, _)| passes).collect();
+                point.seconds = works.iter().map(|(passes, work)| work.seconds(*passes)).collect();
             }
         }
         Ok(points)
     }
 
-    /// The work of a strategy on a city, or why it is out.
-    fn work(&self, strategy: &Configured, city: usize) -> std::result::Result<Work, String> {
-        let target = self.cities[city].target;
+    /// The passes of a strategy on a city and their work, or why it is out.
+    fn work(&self, strategy: &Configured, city: usize) -> std::result::Result<(u32, Work), String> {
         let key = RunKey { seed: hash(&[self.seed, city as u64]), run: u32::MAX };
-        let context = BuildContext { stage: target.stage, seed: key.seed };
-        let sampler = strategy.build(context).map_err(|error| error.to_string())?;
-        let dear = |first_s| {
-            format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {} s", self.time_s)
-        };
-        Work::affordable(target, sampler.as_ref(), key, COUNTED, DEAREST * self.time_s).map_err(dear)
+        Work::next_to(self.cities[city].target, strategy, key, self.time_s, self.passes)
     }
 
     /// So many more runs of some points on every city.

@@ -2,7 +2,7 @@
 
 use super::super::session::Session;
 use super::CITIES;
-use crate::base::error::Result;
+use crate::base::error::{Error, Result};
 use crate::measure::reference::{Reference, Wanted};
 use crate::measure::target::Target;
 use crate::measure::tune;
@@ -45,9 +45,18 @@ pub(super) struct Size<'a> {
 }
 
 impl<'a> Cases<'a> {
-    /// A small city from every view.
+    /// The small cities that are reported: what has no city, or no room for a view, shows here.
     pub(super) fn first(&self, lights: u64) -> Result<Vec<Scene>> {
-        View::ALL.into_iter().map(|view| self.open(lights, self.session.options.overrides.seed, view)).collect()
+        (0..CITIES).map(|city| self.reported(lights, city)).collect()
+    }
+
+    /// The n-th city that is reported.
+    fn reported(&self, lights: u64, city: usize) -> Result<Scene> {
+        let first = self.open(lights, self.session.options.overrides.seed, view(city))?;
+        let seed = first.seed().checked_add(city as u64).ok_or_else(|| {
+            Error::Invalid(format!("the seeds of {CITIES} cities go beyond {}: take a smaller --scene-seed", u64::MAX))
+        })?;
+        if city == 0 { Ok(first) } else { self.open(lights, Some(seed), view(city)) }
     }
 
     pub(super) fn size(self, receivers: Receivers, lights: u64) -> Size<'a> {
@@ -72,23 +81,19 @@ pub(super) fn view(city: usize) -> View {
 impl Size<'_> {
     /// The n-th city that is reported.
     pub(super) fn reported(&self, city: usize) -> Result<Stage> {
-        let first = self.cases.open(self.lights, self.cases.session.options.overrides.seed, view(city))?;
-        self.stage(if city == 0 { first } else { self.of_seed(first.seed() + city as u64, city)? })
+        self.stage(self.cases.reported(self.lights, city)?)
     }
 
     /// Seeds of the cities that parameters are found on: none that is reported.
     pub(super) fn others(&self) -> Result<Vec<u64>> {
-        let first = self.cases.open(self.lights, self.cases.session.options.overrides.seed, view(0))?;
-        Ok(tune::seeds(first.seed(), CITIES))
+        let first = self.cases.reported(self.lights, 0)?.seed();
+        let is_reported = |seed: &u64| seed.wrapping_sub(first) < CITIES as u64;
+        Ok(tune::seeds(first, 2 * CITIES).into_iter().filter(|seed| !is_reported(seed)).take(CITIES).collect())
     }
 
     /// A city of a seed, seen as the n-th.
     pub(super) fn other(&self, seed: u64, city: usize) -> Result<Stage> {
-        self.stage(self.of_seed(seed, city)?)
-    }
-
-    fn of_seed(&self, seed: u64, city: usize) -> Result<Scene> {
-        self.cases.open(self.lights, Some(seed), view(city))
+        self.stage(self.cases.open(self.lights, Some(seed), view(city))?)
     }
 
     fn stage(&self, scene: Scene) -> Result<Stage> {

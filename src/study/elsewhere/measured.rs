@@ -7,16 +7,15 @@ use crate::base::random::{RunKey, hash};
 use crate::measure::counted::Work;
 use crate::measure::experiment::{Experiment, Nowhere, Runs};
 use crate::measure::figure::{Figure, error, mean};
+use crate::measure::reference::Reference;
 use crate::measure::target::Target;
 use crate::record::Row;
 use crate::record::study::{Cell, Cells};
 use crate::record::study_store::StudyWriter;
-use crate::strategy::{BuildContext, Configured};
+use crate::strategy::Configured;
 
-/// Passes that work is counted over.
-const COUNTED: u32 = 2;
-/// A pass may take so many times the time; a strategy whose pass takes longer is left out.
-const DEAREST: f64 = 4.0;
+/// Counted work that is so many times more or less than the time is said.
+const UNEQUAL: f64 = 1.5;
 
 /// Names the random numbers of the runs that are reported: none that anything was chosen by.
 const REPORTED: u64 = u64::from_le_bytes(*b"reported");
@@ -50,17 +49,18 @@ pub(super) fn case(
     }
     let (time_s, allowed, seed) = (size.cases.time_s, size.passes(), session.options.seed);
     session.watch.begin("counting", strategies.len() as u64);
-    let passes: Vec<std::result::Result<u32, String>> = strategies
+    let key_of_counts = RunKey { seed: hash(&[seed, city as u64]), run: u32::MAX };
+    let works: Vec<Affordable> = strategies
         .iter()
         .map(|strategy| {
             session.watch.check()?;
-            let passes = session.engine().alone(|_| affordable(&target, strategy, time_s, allowed, seed))?;
+            let work = session.engine().alone(|_| Work::next_to(&target, strategy, key_of_counts, time_s, allowed))?;
             session.watch.advance(1);
-            Ok(passes)
+            Ok(work)
         })
         .collect::<Result<_>>()?;
     session.watch.end();
-    let ladders: Vec<Vec<u32>> = passes.iter().map(|passes| passes.iter().copied().collect()).collect();
+    let ladders: Vec<Vec<u32>> = works.iter().map(|work| work.iter().map(|(passes, _)| *passes).collect()).collect();
     let experiment = Experiment {
         engine: &session.engine(),
         target: &target,
@@ -68,7 +68,7 @@ pub(super) fn case(
         strategies: &strategies,
         ladders: &ladders,
         runs: size.cases.runs,
-        seed: hash(&[session.options.seed, REPORTED]),
+        seed: hash(&[seed, REPORTED, size.receivers as u64, size.lights, city as u64]),
     };
     let (runs, _) = experiment.run(&mut Nowhere, session.watch)?;
     let row = |at: &str, default: &Configured, one: &Configured| -> Cells {
@@ -76,7 +76,7 @@ pub(super) fn case(
         let mut row: Cells = key.iter().map(|(_, cell)| cell.clone()).collect();
         row.extend([stage.scene().seed().into(), view(city).name().into(), default.name().into(), at.into()]);
         row.push(one.name().into());
-        row.extend(figures(&runs[which], &passes[which], &target));
+        row.extend(figures(&runs[which], &works[which], time_s, &target, &reference));
         row
     };
     let of_default = defaults().map(|default| row("default", default, default));
@@ -84,43 +84,39 @@ pub(super) fn case(
     writer.put("cases", &key, of_default.chain(of_best).collect())
 }
 
-/// The number of passes that come next to the time, by counted work; or why there are none.
-fn affordable(
-    target: &Target<'_>,
-    strategy: &Configured,
-    time_s: f64,
-    allowed: &[u32],
-    seed: u64,
-) -> std::result::Result<u32, String> {
-    let key = RunKey { seed, run: u32::MAX };
-    let context = BuildContext { stage: target.stage, seed };
-    let sampler = strategy.build(context).map_err(|error| error.to_string())?;
-    Work::affordable(target, sampler.as_ref(), key, COUNTED, DEAREST * time_s)
-        .map(|work| work.passes_next_to(time_s, allowed))
-        .map_err(|first_s| format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {time_s} s"))
-}
+/// The passes of a strategy and their work, or why there are none.
+type Affordable = std::result::Result<(u32, Work), String>;
 
-/// Passes, receivers, relMSE, CPU seconds, V and a remark.
-fn figures(runs: &Runs, passes: &std::result::Result<u32, String>, target: &Target<'_>) -> Cells {
+/// Passes, pixels, the truth's own relMSE, counted seconds, relMSE, CPU seconds, V and a remark.
+fn figures(runs: &Runs, work: &Affordable, time_s: f64, target: &Target<'_>, reference: &Reference) -> Cells {
     let nothing = |why: &str| -> Cells {
-        let mut row = vec![Cell::Missing; 11];
+        let mut row = vec![Cell::Missing; 13];
         row.push(why.into());
         row
     };
-    let passes = match passes {
-        Ok(passes) => *passes,
+    let (passes, work) = match work {
+        Ok(affordable) => affordable,
         Err(why) => return nothing(why),
     };
     if let Some(why) = runs.rows.iter().find_map(|row| row.error.as_ref()) {
         return nothing(why);
     }
-    let rows = runs.at(passes);
+    let rows = runs.at(*passes);
     let seconds = || mean(&rows, Row::total_cpu_s);
     let v = Figure::of(vec![error(&rows), seconds()], |parts| parts[0] * parts[1]);
-    let mut row: Cells = vec![u64::from(passes).into(), (target.places.len() as u64).into()];
+    let (counted_s, own) = (work.seconds(*passes), reference.truth.after(*passes).own_rel_mse());
+    let mut row: Cells =
+        vec![u64::from(*passes).into(), (target.places.len() as u64).into(), own.into(), counted_s.into()];
     row.extend(cells(error(&rows).interval()));
     row.extend(cells(seconds().interval()));
     row.extend(cells(v.interval()));
-    row.push(Cell::Missing);
+    let mut remarks = Vec::new();
+    if counted_s > UNEQUAL * time_s || UNEQUAL * counted_s < time_s {
+        remarks.push(format!("{:.1} times the time", counted_s / time_s));
+    }
+    if own > 0.01 * error(&rows).estimate {
+        remarks.push("the truth's own error is more than a hundredth of this".to_owned());
+    }
+    row.push(remarks.join("; ").as_str().into());
     row
 }

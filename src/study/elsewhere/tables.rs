@@ -1,6 +1,6 @@
 //! What stands in the tables of `study elsewhere`?
 
-use super::super::columns::{column, interval};
+use super::super::columns::{column, interval, plot};
 use super::CITIES;
 use super::case::Cases;
 use super::together::base;
@@ -17,16 +17,16 @@ pub(super) const OTHERS: [&str; 3] = ["light-tree", "stochastic-cull", "intensit
 
 /// All tables: what all cases say together first.
 pub(super) fn all(cases: &Cases<'_>, grids: &[Vec<Configured>]) -> Vec<TableRecord> {
-    let base = grids[base(grids)][0].name();
-    vec![
+    let names: Vec<&str> = grids.iter().map(|grid| grid[0].name()).collect();
+    let base = names[base(&names)];
+    let mut tables = vec![
         summary("best", &format!("each strategy at its best: V over that of {base}"), base),
         summary("default", &format!("each strategy at its defaults: V over that of {base}"), base),
         over(),
-        loss(),
-        tuned(),
-        grid(),
-        measured(cases),
-    ]
+    ];
+    tables.extend(CONDITIONS.map(|receivers| by_size(receivers, base)));
+    tables.extend([loss(), tuned(), grid(), measured(cases)]);
+    tables
 }
 
 fn group() -> [ColumnRecord; 2] {
@@ -61,12 +61,18 @@ fn summary(name: &str, title: &str, base: &str) -> TableRecord {
                  every case. Less is better."
             ),
             format!(
-                "geometric means over the cases of a condition ({CITIES} cities of each size, seen from a street, a roof and \
-                 the sky in turn), with 95 % intervals by Student's t on the logarithms; a rank of 2-4 may be any of these, and \
-                 rows that share a letter are not told apart (paired t tests over all cases, Holm, 5 % in all)."
+                "geometric means over all sizes of {CITIES} cities, seen from a street, a roof and the sky in turn; under `all` over \
+                 all conditions too. 95 % intervals by Student's t over the cities: sizes and conditions of one seed count as one. \
+                 A rank of 2-4 may be any of these, and rows that share a letter are not told apart (paired t tests over the \
+                 cities, Holm, 5 % in all)."
             ),
             parameters.to_owned(),
-            "without a rank: not measured in every case, as where a pass takes too long.".to_owned(),
+            "where receivers move, errors are of the choice of lights alone: more picks at one receiver then always pay, up to the \
+             most that a grid has, though what a path tracer sees depends on where its paths go as well."
+                .to_owned(),
+            "without a figure: not measured in every case of the column, as where a pass takes too long among many lights; the \
+             tables by size have the rest. least, greatest and worst case are of single cases."
+                .to_owned(),
         ],
         plots: Vec::new(),
     }
@@ -86,10 +92,29 @@ fn over() -> TableRecord {
         columns,
         notes: vec![
             "both at their best, and both at their defaults; below 1 where `visible` is better. Geometric means over cities with \
-             95 % intervals over them."
+             95 % intervals over them; `all` sizes of a city count as one, and have no figure where one size has none."
                 .to_owned(),
         ],
         plots: Vec::new(),
+    }
+}
+
+fn by_size(receivers: &str, base: &str) -> TableRecord {
+    let mut columns = vec![column("lights", "lights", Format::Whole), column("strategy", "strategy", Format::Name)];
+    columns.extend(interval("ratio", &format!("V over that\nof {base}"), Format::Number));
+    let drawn = plot(
+        receivers,
+        &format!("{receivers}: V over that of {base}, each at its best"),
+        "strategy",
+        ("lights", "lights"),
+        ("ratio", "V over V, less is better"),
+    );
+    TableRecord {
+        name: receivers.to_owned(),
+        title: format!("{receivers}: each strategy at its best, by the number of lights"),
+        columns,
+        notes: vec![format!("geometric means over {CITIES} cities, with 95 % intervals over them.")],
+        plots: vec![drawn],
     }
 }
 
@@ -101,6 +126,7 @@ fn loss() -> TableRecord {
         column("there", "found on the reported ones", Format::Name),
     ]);
     columns.extend(interval("loss", "V over V", Format::Number));
+    columns.push(column("remark", "", Format::Words));
     TableRecord {
         name: "loss".to_owned(),
         title: "what parameters lose in cities that they were not found in".to_owned(),
@@ -150,7 +176,8 @@ fn grid() -> TableRecord {
         title: "every point of every grid".to_owned(),
         columns,
         notes: vec![
-            "geometric means over the tuning cities. A point that is much worse than the best after few runs is left, and says so."
+            "geometric means over the tuning cities; V of the best, the next and the default by runs that chose none of them, of the \
+             others by those that chose. A point that is much worse than the best after few runs is left, and says so."
                 .to_owned(),
         ],
         plots: Vec::new(),
@@ -168,6 +195,8 @@ fn measured(cases: &Cases<'_>) -> TableRecord {
         column("parameters", "parameters", Format::Name),
         column("passes", "passes", Format::Whole),
         column("pixels", "pixels", Format::Whole),
+        column("truth_rel_mse", "truth's own\nrelMSE", Format::Number),
+        column("counted_s", "counted ms", Format::Milliseconds),
     ]);
     columns.extend(interval("rel_mse", "relMSE", Format::Number));
     columns.extend(interval("cpu_s", "CPU ms", Format::Milliseconds));
@@ -179,7 +208,8 @@ fn measured(cases: &Cases<'_>) -> TableRecord {
         columns,
         notes: vec![format!(
             "{} runs of the number of passes (powers of two and their halves more, at most 128, and 32 where receivers move) whose \
-             counted work, set-up in, comes next to {} s; a pass that takes more than four times that is not run. CPU ms: set-up \
+             counted work, set-up in, comes next to {} s; a pass that takes more than four times that is not run. Where the counted time is more than 1.5 times more or less, the remark says so: rows are \
+             compared by V, which does not depend on the time as long as errors fall as 1 / time. CPU ms: set-up \
              and every arrival in. relMSE at so many pixels.",
             cases.runs, cases.time_s
         )],

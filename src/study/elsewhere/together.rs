@@ -1,7 +1,8 @@
 //! What do all cases say together?
 //!
-//! A case is a replicate: V of a strategy over that of another in the same case is a ratio, and the spread of the ratios
-//! says how far another city, view or size may be from their mean.
+//! A city is a replicate: the geometric mean of V over all its cases (sizes, conditions) of one strategy over that of
+//! another is a ratio, and the spread of the ratios says how far another city may be from their mean. Cases of one seed share
+//! streets and views, and are no replicates of one another.
 
 use super::super::cells::cells;
 use super::tables::{CONDITIONS, KINDS, OTHERS};
@@ -23,15 +24,16 @@ pub(super) fn summarise(writer: &mut StudyWriter, grids: &[Vec<Configured>]) -> 
     let cases = Found { table, rows, strategies: &strategies };
     let summaries = KINDS.map(|kind| (kind, summary(&cases, kind)));
     let over = over(&cases);
-    for (kind, rows) in summaries {
-        writer.put(kind, &[], rows)?;
+    let sizes = CONDITIONS.map(|receivers| (receivers, by_size(&cases, receivers)));
+    for (name, rows) in summaries.into_iter().chain(sizes) {
+        writer.put(name, &[], rows)?;
     }
     writer.put("over", &[], over)
 }
 
 /// The strategy that others are held against: the light tree, or where it is not asked for the first.
-pub(super) fn base(grids: &[Vec<Configured>]) -> usize {
-    grids.iter().position(|grid| grid[0].name() == "light-tree").unwrap_or(0)
+pub(super) fn base(strategies: &[&str]) -> usize {
+    strategies.iter().position(|name| *name == "light-tree").unwrap_or(0)
 }
 
 /// What was measured.
@@ -41,13 +43,30 @@ struct Found<'a> {
     strategies: &'a [&'a str],
 }
 
-/// V of each strategy in some cases, and which cases these are.
+/// V of each strategy in some cases.
 struct Chosen {
-    replicates: Replicates,
+    /// By case.
+    single: Replicates,
+    /// By city: the geometric mean over its cases, none where one of them has no figure.
+    cities: Replicates,
     cases: Vec<String>,
 }
 
 impl Found<'_> {
+    /// The numbers of lights, ascending.
+    fn sizes(&self) -> Vec<u64> {
+        let lights = self.rows.iter().filter_map(|row| self.cell(row, "lights").number());
+        let mut sizes: Vec<u64> = lights.map(|lights| lights as u64).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        sizes
+    }
+
+    /// The row of the strategy that others are held against.
+    fn base(&self) -> usize {
+        base(self.strategies)
+    }
+
     fn cell<'r>(&self, row: &'r Cells, column: &str) -> &'r Cell {
         &row[self.table.column(column).expect("a column of this study")]
     }
@@ -70,58 +89,100 @@ impl Found<'_> {
                 cases.push(case);
             }
         }
-        let figure = |strategy: &str, case: &String| {
-            let row = mine().find(|row| *self.cell(row, "strategy") == Cell::from(strategy) && name(row) == *case)?;
-            self.cell(row, "v").number()
+        let seed = |row: &Cells| text(self.cell(row, "seed"));
+        let mut seeds: Vec<String> = Vec::new();
+        for of_row in mine().map(seed) {
+            if !seeds.contains(&of_row) {
+                seeds.push(of_row);
+            }
+        }
+        let of = |strategy: &str| {
+            mine().filter(move |row| *self.cell(row, "strategy") == Cell::from(strategy)).collect::<Vec<&Cells>>()
         };
-        let of = |strategy: &&str| cases.iter().map(|case| figure(strategy, case)).collect();
-        Chosen { replicates: Replicates::of(self.strategies.iter().map(of).collect()), cases }
+        let v = |row: &Cells| self.cell(row, "v").number();
+        let single = |strategy: &&str| {
+            let rows = of(strategy);
+            cases.iter().map(|case| rows.iter().find(|row| name(row) == *case).and_then(|row| v(row))).collect()
+        };
+        let city = |strategy: &&str| {
+            let rows = of(strategy);
+            let mean = |wanted: &String| {
+                let logs = rows.iter().filter(|row| seed(row) == *wanted).map(|row| v(row).map(f64::ln));
+                let logs = logs.collect::<Option<Vec<f64>>>()?;
+                Some((logs.iter().sum::<f64>() / logs.len() as f64).exp())
+            };
+            seeds.iter().map(mean).collect()
+        };
+        Chosen {
+            single: Replicates::of(self.strategies.iter().map(single).collect()),
+            cities: Replicates::of(self.strategies.iter().map(city).collect()),
+            cases,
+        }
+    }
+}
+
+impl Chosen {
+    /// A strategy over another: over the cities, where both are measured in all of them.
+    fn over(&self, strategy: usize, base: usize) -> Option<Ratio> {
+        let whole = |row: usize| self.single.measured(row) == self.cases.len();
+        (whole(strategy) && whole(base)).then(|| self.cities.over(strategy, base, CONFIDENCE))?
     }
 }
 
 /// A row a strategy, best first: its ratio to the base under each condition and under all, its place and its worst case.
 fn summary(found: &Found<'_>, kind: &str) -> Vec<Cells> {
-    let base = found.strategies.iter().position(|name| *name == "light-tree").unwrap_or(0);
+    let base = found.base();
     let by_condition =
         CONDITIONS.map(|receivers| found.of(kind, |row| *found.cell(row, "receivers") == Cell::from(receivers)));
     let all = found.of(kind, |_| true);
-    let places = all.replicates.places(LEVEL);
-    let ratio = |of: &Chosen, strategy| of.replicates.over(strategy, base, CONFIDENCE);
+    let places = all.cities.places(LEVEL);
     let mut order: Vec<usize> = (0..found.strategies.len()).collect();
-    let mean = |strategy: usize| ratio(&all, strategy).map_or(f64::INFINITY, |ratio| ratio.mean);
-    let missing = |strategy: usize| all.cases.len() - all.replicates.measured(strategy);
+    let mean = |strategy: usize| all.over(strategy, base).map_or(f64::INFINITY, |ratio| ratio.mean);
+    let missing = |strategy: usize| all.cases.len() - all.single.measured(strategy);
     order.sort_by(|&a, &b| (missing(a) > 0).cmp(&(missing(b) > 0)).then(mean(a).total_cmp(&mean(b))));
     let row = |strategy: usize| {
         let mut row: Cells = vec![found.strategies[strategy].into()];
-        row.extend(by_condition.iter().flat_map(|of| interval(ratio(of, strategy))));
-        let whole = ratio(&all, strategy);
-        row.extend(interval(whole));
+        row.extend(by_condition.iter().flat_map(|of| interval(of.over(strategy, base))));
+        row.extend(interval(all.over(strategy, base)));
+        let single = all.single.over(strategy, base, CONFIDENCE);
         let place = places[strategy].as_ref();
         let rank = place.map(|place| match place.rank {
             [first, last] if first == last => format!("{first} {}", place.letters),
             [first, last] => format!("{first}-{last} {}", place.letters),
         });
         row.push(rank.as_deref().into());
-        row.extend([whole.map(|ratio| ratio.least.0).into(), whole.map(|ratio| ratio.greatest.0).into()]);
-        let worst = whole.filter(|_| strategy != base).map(|ratio| all.cases[ratio.greatest.1].as_str());
+        row.extend([single.map(|ratio| ratio.least.0).into(), single.map(|ratio| ratio.greatest.0).into()]);
+        let worst = single.filter(|_| strategy != base).map(|ratio| all.cases[ratio.greatest.1].as_str());
         row.push(worst.into());
-        row.push((all.replicates.measured(strategy) as u64).into());
+        row.push((all.single.measured(strategy) as u64).into());
         row
     };
     order.into_iter().map(row).collect()
+}
+
+/// The ratio of each strategy to the base at each size under a condition, both at their best.
+fn by_size(found: &Found<'_>, receivers: &str) -> Vec<Cells> {
+    let mut rows = Vec::new();
+    for lights in found.sizes() {
+        let of = found.of(KINDS[0], |row| {
+            *found.cell(row, "receivers") == Cell::from(receivers) && *found.cell(row, "lights") == Cell::from(lights)
+        });
+        for (strategy, name) in found.strategies.iter().enumerate() {
+            let mut row: Cells = vec![lights.into(), (*name).into()];
+            row.extend(interval(of.over(strategy, found.base())));
+            rows.push(row);
+        }
+    }
+    rows
 }
 
 /// The flagship over its rivals, by condition and size: at defaults and at bests.
 fn over(found: &Found<'_>) -> Vec<Cells> {
     let place = |name: &str| found.strategies.iter().position(|known| *known == name);
     let Some(own) = place("visible") else { return Vec::new() };
-    let mut sizes: Vec<u64> =
-        found.rows.iter().filter_map(|row| found.cell(row, "lights").number()).map(|n| n as u64).collect();
-    sizes.sort_unstable();
-    sizes.dedup();
     let mut rows = Vec::new();
     for receivers in CONDITIONS {
-        for lights in sizes.iter().copied().map(Some).chain([None]) {
+        for lights in found.sizes().into_iter().map(Some).chain([None]) {
             let wanted = |row: &Cells| {
                 *found.cell(row, "receivers") == Cell::from(receivers)
                     && lights.is_none_or(|lights| *found.cell(row, "lights") == Cell::from(lights))
@@ -131,7 +192,7 @@ fn over(found: &Found<'_>) -> Vec<Cells> {
             let kinds = KINDS.map(|kind| found.of(kind, wanted));
             for other in OTHERS {
                 for of in &kinds {
-                    let ratio = place(other).and_then(|other| of.replicates.over(own, other, CONFIDENCE));
+                    let ratio = place(other).and_then(|other| of.over(own, other));
                     row.extend(interval(ratio));
                 }
             }

@@ -23,7 +23,6 @@ pub(super) fn best(size: &Size<'_>, writer: &mut StudyWriter, grids: &[Vec<Confi
     let session = size.cases.session;
     let key = [("receivers", size.receivers.name().into()), ("lights", size.lights.into())];
     if !writer.has("tuned", &key, grids.len()) {
-        session.watch.begin("tuning cities", CITIES as u64);
         let found = on(size, grids, &|city| size.other(size.others()?[city], city))?;
         writer.put(
             "grid",
@@ -95,20 +94,32 @@ pub(super) fn loss(
         let mut row: Vec<Cell> = vec![key[0].1.clone(), key[1].1.clone(), grid[0].name().into()];
         row.extend([pair[0].name().into(), pair[pair.len() - 1].name().into()]);
         row.extend(cells(if pair.len() == 1 { Some(Interval::certain(1.0)) } else { over_other(found) }));
+        row.push(why_not(found));
         row
     };
     writer.put("loss", &key, grids.iter().zip(&pairs).zip(&scored).map(row).collect())
 }
 
-/// The score of the first of two points over the other's, whichever was chosen.
+/// The score of the first of two points over the other's, whichever was chosen; without an interval where one of them was
+/// left before the end.
 fn over_other(found: &TunedStrategy) -> Option<Interval> {
-    let Interval { mean, low, high } = found.second.as_ref()?.over_best;
-    let is_first = found.best.as_ref() == Some(&found.default);
-    Some(if is_first {
-        Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low }
-    } else {
-        Interval { mean, low, high }
-    })
+    let [first, other] = &found.points[..] else { return None };
+    let told = found.second.as_ref().map(|second| second.over_best).map(|Interval { mean, low, high }| {
+        let is_first = found.best.as_ref() == Some(&found.default);
+        if is_first {
+            Interval { mean: 1.0 / mean, low: 1.0 / high, high: 1.0 / low }
+        } else {
+            Interval { mean, low, high }
+        }
+    });
+    let known = || Some(Interval { mean: first.score? / other.score?, ..Interval::NONE });
+    told.or_else(known)
+}
+
+/// Why there is no score of one of the points.
+fn why_not(found: &TunedStrategy) -> Cell {
+    let out = found.points.iter().find_map(|point| point.out.as_ref().map(|why| format!("{}: {why}", point.name)));
+    out.as_deref().into()
 }
 
 fn tuned_row(size: &Size<'_>, found: &TunedStrategy) -> Vec<Cell> {
