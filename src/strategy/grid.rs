@@ -67,7 +67,7 @@ impl Registry {
     ///
     /// # Errors
     /// As [`grid`](Self::grid); an empty list; two grids about the same default.
-    pub fn grids(&self, list: &str) -> Result<Vec<Vec<Configured>>> {
+    pub(crate) fn grids(&self, list: &str) -> Result<Vec<Vec<Configured>>> {
         let grids: Vec<Vec<Configured>> = texts(list)?.iter().map(|text| self.grid(text)).collect::<Result<_>>()?;
         each_once(&grids.iter().map(|grid| &grid[0]).collect::<Vec<_>>())?;
         Ok(grids)

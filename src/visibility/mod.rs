@@ -10,4 +10,4 @@ pub(crate) mod russian_roulette;
 pub mod stage;
 mod triangle;
 pub mod view;
-pub mod visits;
+pub(crate) mod visits;

@@ -57,7 +57,7 @@ impl Stage {
     /// Prepares a scene whose passes visit these receivers.
     ///
     /// Where receivers move, no light is left out for facing away from all of them: nobody knows them yet.
-    pub fn visiting(scene: Scene, leave_out: LeaveOut, offset: Offset, receivers: Receivers) -> Self {
+    pub(crate) fn visiting(scene: Scene, leave_out: LeaveOut, offset: Offset, receivers: Receivers) -> Self {
         let mut shared = Vec::new();
         let occluders = timed(&mut shared, "occluders", || Occluders::new(&scene));
         let view = timed(&mut shared, "view", || View::new(&scene, &occluders));
@@ -109,7 +109,7 @@ impl Stage {
     }
 
     /// Which points the passes visit.
-    pub fn visits(&self) -> Receivers {
+    pub(crate) fn visits(&self) -> Receivers {
         self.visits
     }
 

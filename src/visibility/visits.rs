@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 
 /// Which points the passes of a pixel visit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Receivers {
+pub(crate) enum Receivers {
     /// What the pixel sees through its centre: the same in every pass.
     #[default]
     Centre,
@@ -31,21 +31,21 @@ pub enum Receivers {
 
 impl Receivers {
     /// All of them by name, default first.
-    pub const NAMED: [(&'static str, Self); 3] =
+    pub(crate) const NAMED: [(&'static str, Self); 3] =
         [("centre", Self::Centre), ("spread", Self::Spread), ("bounce", Self::Bounce)];
 
     /// The one of that name.
-    pub fn named(name: &str) -> Option<Self> {
+    pub(crate) fn named(name: &str) -> Option<Self> {
         Self::NAMED.into_iter().find(|(known, _)| *known == name).map(|(_, receivers)| receivers)
     }
 
     /// What it is called.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         Self::NAMED[self as usize].0
     }
 
     /// Whether each pass visits points of its own.
-    pub fn moves(self) -> bool {
+    pub(crate) fn moves(self) -> bool {
         self != Self::Centre
     }
 }

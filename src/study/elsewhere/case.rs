@@ -1,7 +1,6 @@
 //! Which condition, size, city and view is a case?
 
 use super::super::session::Session;
-use super::CITIES;
 use crate::base::error::{Error, Result};
 use crate::measure::reference::{Reference, Wanted};
 use crate::measure::target::Target;
@@ -14,6 +13,8 @@ use crate::visibility::stage::{LeaveOut, Stage};
 use crate::visibility::visits::Receivers;
 use std::path::Path;
 
+/// Cities that are reported, and others that parameters are found on.
+pub(super) const CITIES: usize = 5;
 /// Receivers of a frame that errors are taken at.
 const PIXELS: usize = 512;
 /// Pixels across and down where nobody says otherwise.

@@ -28,7 +28,7 @@ use crate::base::error::{Error, Result};
 use crate::record::study::Study;
 use crate::strategy::Configured;
 use crate::visibility::visits::Receivers;
-use case::Cases;
+use case::{CITIES, Cases};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "elsewhere",
@@ -41,8 +41,6 @@ const SCENE: &str = "scenes/downtown.toml";
 /// Fewest and most lights of a city.
 const FEWEST: u64 = 1_000;
 const MOST: u64 = 100_000;
-/// Cities that are reported, and others that parameters are found on.
-const CITIES: usize = 5;
 /// A run's share of the counted seconds and of the runs that are asked for: there are many of them.
 const TIME: f64 = 0.12;
 const RUNS: u32 = 2;

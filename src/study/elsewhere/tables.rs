@@ -1,9 +1,7 @@
 //! What stands in the tables of `study elsewhere`?
 
 use super::super::columns::{column, interval, plot};
-use super::CITIES;
-use super::case::Cases;
-use super::together::base;
+use super::case::{CITIES, Cases};
 use crate::record::study::{ColumnRecord, Format, TableRecord};
 use crate::strategy::Configured;
 use crate::visibility::visits::Receivers;
@@ -27,6 +25,11 @@ pub(super) fn all(cases: &Cases<'_>, grids: &[Vec<Configured>]) -> Vec<TableReco
     tables.extend(CONDITIONS.map(|receivers| by_size(receivers, base)));
     tables.extend([loss(), tuned(), grid(), measured(cases)]);
     tables
+}
+
+/// The strategy that others are held against: the light tree, or where it is not asked for the first.
+pub(super) fn base(strategies: &[&str]) -> usize {
+    strategies.iter().position(|name| *name == "light-tree").unwrap_or(0)
 }
 
 fn group() -> [ColumnRecord; 2] {

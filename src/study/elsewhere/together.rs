@@ -5,7 +5,7 @@
 //! streets and views, and are no replicates of one another.
 
 use super::super::cells::cells;
-use super::tables::{CONDITIONS, KINDS, OTHERS};
+use super::tables::{CONDITIONS, KINDS, OTHERS, base};
 use crate::base::error::Result;
 use crate::base::replicates::{Ratio, Replicates};
 use crate::record::Interval;
@@ -29,11 +29,6 @@ pub(super) fn summarise(writer: &mut StudyWriter, grids: &[Vec<Configured>]) -> 
         writer.put(name, &[], rows)?;
     }
     writer.put("over", &[], over)
-}
-
-/// The strategy that others are held against: the light tree, or where it is not asked for the first.
-pub(super) fn base(strategies: &[&str]) -> usize {
-    strategies.iter().position(|name| *name == "light-tree").unwrap_or(0)
 }
 
 /// What was measured.

@@ -1,8 +1,7 @@
 //! Which parameters are best, and what do they lose in cities that they were not found in?
 
 use super::super::cells::cells;
-use super::CITIES;
-use super::case::Size;
+use super::case::{CITIES, Size};
 use crate::base::error::Result;
 use crate::measure::reference::Reference;
 use crate::measure::target::Target;
