@@ -103,7 +103,8 @@ pub(super) fn run(arguments: &Arguments, home: &Home<'_>) -> anyhow::Result<Outc
         let asked = Asked { home, arguments, peers: &peers, threads, scenes: count };
         let plan = plan(&asked, &scenes, strategies) + &tuning.plan();
         let record = begun::record(home, plan, arguments.seed, arguments.repeats);
-        let record = RunRecord { base, parameters: tuning.parameters(), ..record };
+        let plan = base.iter().fold(record.plan.clone(), |plan, base| format!("{plan}; base {base}"));
+        let record = RunRecord { base, plan, parameters: tuning.parameters(), ..record };
         if threads > environment::cores() {
             say(&format!(
                 "{threads} runs side by side on {} cores: wall times will mean nothing",

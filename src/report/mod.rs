@@ -96,11 +96,11 @@ pub(crate) fn derive(run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     Ok(files)
 }
 
-/// All that follows from a comparison's records in `folder`: as [`derive`], then the page and the plot of what was tuned for
+/// All that follows from a comparison's records in `folder`: as [`derive()`], then the page and the plot of what was tuned for
 /// each recipe.
 ///
 /// # Errors
-/// As [`derive`]; what was tuned, where it cannot be read.
+/// As [`derive()`]; what was tuned, where it cannot be read.
 pub(crate) fn derive_all(folder: &Path, run: &RunRecord, rows: &[Row]) -> Result<Vec<Derived>> {
     let mut files = derive(run, rows)?;
     for TunedFamily { family, file, .. } in run.parameters.iter().flat_map(Parameters::tuned) {

@@ -97,7 +97,7 @@ fn two_cities_and_two_views_are_four_scenes_and_one_table() {
     fs::write(out.join("replicates-first-night.md"), page + "\n").expect("written");
     report(&["--check"]).code(1).stdout(contains("replicates-first-night.md"));
 
-    // Shown again, not measured again; another base is another table of the same rows.
+    // Shown again, not measured again; with another base it is another comparison.
     compare().assert().success().stdout(together()).stderr(contains("nothing was measured"));
-    compare().args(["--cities", "3"]).assert().code(2);
+    compare().args(["--base", "power"]).assert().code(2).stderr(contains("base power"));
 }
