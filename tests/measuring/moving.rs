@@ -107,7 +107,7 @@ fn apart(truth: &Truth, wanted: &[DVec3]) -> f64 {
 fn the_truth_is_the_sum_over_all_lights_at_the_very_receivers_of_each_pass() {
     for receivers in MOVING {
         let stage = stage(boxes(), receivers);
-        let target = Target::whole(&stage).after([1, 4]);
+        let target = Target::whole(&stage).after([1, 16]);
         let visited = target.visited().len();
         assert!(visited >= 200, "{}: {visited} receivers", receivers.name());
         let found = truth(&target, 1e-8);
@@ -115,7 +115,7 @@ fn the_truth_is_the_sum_over_all_lights_at_the_very_receivers_of_each_pass() {
             let scene = stage.scene();
             scene.lights().iter().map(|light| adds(scene, light, at)).sum()
         };
-        for passes in [1, 4] {
+        for passes in [1, 16] {
             let found = found.after(passes);
             let off = apart(found, &mean(&target, passes, 0, sum));
             println!("{}: {visited} receivers, {passes} passes: {off:.1e} of the mean apart", receivers.name());
