@@ -113,7 +113,7 @@ mod tests {
         assert_eq!(names("power:picks={4,2}"), ["power", "power:picks=4", "power:picks=2"]);
         let kept = names("visible:cut=48");
         assert!(kept[0] == "visible:cut=48" && kept.iter().all(|point| point.contains("cut=48")), "{kept:?}");
-        assert!(kept.len() > 1 && kept.contains(&"visible:cut=48,picks=2".to_owned()), "{kept:?}");
+        assert!(kept.len() > 1 && kept.contains(&"visible:cut=48,picks=4".to_owned()), "{kept:?}");
         assert_eq!(names("oracle:mix=0.2"), ["oracle:mix=0.2"]);
         let grids = Registry::standard().grids("power:picks={1,2},mix=0.5 null,visible:cut=48").expect("a list");
         assert_eq!(
