@@ -63,7 +63,7 @@ fn a_comparison_says_what_its_passes_visit() {
     let (before, after) = (plane.find("[[box]]").expect("a box"), plane.find("[[light]]").expect("a light"));
     std::fs::write(&bare, format!("{}{}", &plane[..before], &plane[after..])).expect("written");
     let nothing = compare("bounce", bare.to_str().expect("a name")).assert().code(1);
-    nothing.stderr(contains("nothing can be measured")).stderr(contains("what passes visit"));
+    nothing.stderr(contains("nothing can be measured")).stderr(contains("meets a surface"));
     // Going on there with other receivers is another comparison.
     let mut other =
         citylights(&format!("compare {LAMP} -s power,intensity,oracle --budget 4 --repeats 3 --receivers bounce"));
