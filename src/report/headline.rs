@@ -63,11 +63,13 @@ fn below(scene: &SceneRecord, summaries: &[&Summary]) -> Vec<String> {
     if read(Read::Never) {
         below.push(format!("{NEVER}: its bias alone is larger."));
     }
-    below.push(
-        "V: variance in units of relMSE x CPU seconds of sampling, both at the largest budget (passes, below). It belongs \
-         to that budget: coming to a receiver is paid once, however many passes."
-            .to_owned(),
-    );
+    let paid = match scene.visits {
+        None => "It belongs to that budget: coming to a receiver is paid once, however many passes.",
+        Some(_) => "Every pass comes to receivers of its own, and pays for that.",
+    };
+    below.push(format!(
+        "V: variance in units of relMSE x CPU seconds of sampling, both at the largest budget (passes, below). {paid}"
+    ));
     if let Some(receivers) = summaries.iter().find_map(|s| s.receivers) {
         below.push(format!(
             "x oracle: error per sample over that of the oracle, at the same {} receivers; the oracle is not timed.",

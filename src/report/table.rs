@@ -39,14 +39,19 @@ pub(super) fn sheets(scene: &SceneRecord, rows: &[Row]) -> Vec<Sheet> {
     let timed: Vec<&Summary> = measured.iter().copied().filter(|s| s.claim != Claim::Oracle).collect();
     if !timed.is_empty() {
         let counted: Vec<&Summary> = timed.iter().copied().filter(|s| !s.claim.is_external()).collect();
-        sheets.extend([cost(&timed), bias(&timed), other_measures(&timed, &rows), by_brightness(&timed, &rows)]);
+        sheets.extend([
+            cost(&timed, scene.visits.is_some()),
+            bias(&timed),
+            other_measures(&timed, &rows),
+            by_brightness(&timed, &rows),
+        ]);
         sheets.extend((!counted.is_empty()).then(|| work(&counted)));
     }
     sheets.extend(work_of_choosing(&measured));
     sheets
 }
 
-fn cost(summaries: &[&Summary]) -> Sheet {
+fn cost(summaries: &[&Summary], moving: bool) -> Sheet {
     let ms = |seconds: Interval| Estimate::of(seconds.times(1e3));
     let columns = [
         Column::new("set-up, ms", move |s| ms(s.setup_cpu_s)),
@@ -59,8 +64,12 @@ fn cost(summaries: &[&Summary]) -> Sheet {
     ];
     let below = vec![
         "An image of n passes takes set-up + arrival + n x a pass, in CPU time of one thread.".to_owned(),
-        "arrival: coming to every receiver once, however many passes; with a pass, from the least and the largest budget."
-            .to_owned(),
+        match moving {
+            false => "arrival: coming to every receiver once, however many passes; with a pass, from the least and the largest budget.",
+            true => "arrival: what is paid once, as for what is learned; with a pass, which pays for coming to its own receivers, from \
+                     the least and the largest budget.",
+        }
+        .to_owned(),
     ];
     Sheet::new("Cost", summaries, &columns, below)
 }
