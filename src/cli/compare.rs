@@ -20,7 +20,7 @@ use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
 use crate::measure::reference::WORK_S;
-use crate::measure::tuning_cities::Search;
+use crate::measure::tuning_cities::{Ground, PIXELS, Search, passes};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::environment;
@@ -184,10 +184,13 @@ impl Session {
         let search = Search {
             engine: &Engine { clock: &clock, workers: threads as usize, seed: arguments.seed },
             time_s: arguments.tuning.tune_time,
-            most_passes: arguments.budget.unwrap_or(USUAL_PASSES),
             seed: arguments.seed,
-            reference_work_s: arguments.reference_work,
-            cache: &arguments.cache,
+            ground: Ground {
+                passes: &passes(arguments.budget.unwrap_or(USUAL_PASSES), arguments.receivers.moves()),
+                pixels: PIXELS,
+                reference_work_s: arguments.reference_work,
+                cache: &arguments.cache,
+            },
             program: home.foreign(),
         };
         let settled = tuning.settle(self.folder.path(), &search, arguments.receivers, progress);

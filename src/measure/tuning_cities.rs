@@ -19,13 +19,26 @@ pub(crate) const CITIES: usize = 5;
 pub(crate) const RUNS: u32 = 6;
 
 /// Receivers of a frame that errors are taken at.
-const PIXELS: usize = 512;
+pub(crate) const PIXELS: usize = 512;
 /// The reference's own relMSE, where its work allows: far below any error that a choice rests on.
 const OWN_REL_MSE: f64 = 1e-5;
 /// Most counted work of a city's reference, in nominal seconds.
 const REFERENCE_S: f64 = 24.0;
 /// Most passes where receivers move: the truth must be known at all that they visit.
-const MOST_MOVING: u32 = 64;
+pub(crate) const MOST_MOVING: u32 = 64;
+
+/// Where the errors of a city are taken, and against what.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    /// The numbers of passes that a run may have, ascending.
+    pub passes: &'a [u32],
+    /// Most receivers of the frame that errors are taken at.
+    pub pixels: usize,
+    /// Most counted work of a city's reference, in nominal seconds, where that is less than usual.
+    pub reference_work_s: f64,
+    /// Folder of cached references.
+    pub cache: &'a Path,
+}
 
 /// How parameters are looked for.
 pub(crate) struct Search<'a> {
@@ -33,14 +46,10 @@ pub(crate) struct Search<'a> {
     pub engine: &'a Engine<'a>,
     /// Nominal CPU seconds of a run, set-up in.
     pub time_s: f64,
-    /// Most passes of a run.
-    pub most_passes: u32,
     /// The user's seed.
     pub seed: u64,
-    /// Most counted work of a city's reference, in nominal seconds, where that is less than usual.
-    pub reference_work_s: f64,
-    /// Folder of cached references.
-    pub cache: &'a Path,
+    /// Where errors are taken.
+    pub ground: Ground<'a>,
     /// The program, where it is not this crate's own.
     pub program: Option<Program>,
 }
@@ -49,7 +58,7 @@ impl Search<'_> {
     /// Tunes every strategy that has a choice on the cities in which there is something to see.
     ///
     /// # Errors
-    /// Cities of which none has a lit surface in view; as [`Tuner::all`] and [`Reference::bounded`].
+    /// As [`with`](Self::with) and [`Tuner::all`].
     pub(crate) fn on(
         &self,
         stages: &[Stage],
@@ -57,13 +66,20 @@ impl Search<'_> {
         condition: Condition,
         watch: &dyn Observer,
     ) -> Result<Tuned> {
-        let moves = stages.iter().any(|stage| stage.visits().moves());
-        let passes = passes(if moves { self.most_passes.min(MOST_MOVING) } else { self.most_passes });
-        let known = |stage| {
-            let target = Target::whole(stage).thinned(PIXELS).after(passes.iter().copied());
-            let wanted = Wanted { work_s: REFERENCE_S.min(self.reference_work_s), ..Wanted::new(OWN_REL_MSE) };
-            Reference::bounded(&target, wanted, self.cache, watch)
-        };
+        self.with(stages, watch, |tuner| tuner.all(grids, condition, self.program.clone(), watch))
+    }
+
+    /// Does something with a tuner on the cities in which there is something to see.
+    ///
+    /// # Errors
+    /// Cities of which none has a lit surface in view; an error of `tune`; as [`Reference::bounded`].
+    pub(crate) fn with<T>(
+        &self,
+        stages: &[Stage],
+        watch: &dyn Observer,
+        tune: impl FnOnce(&Tuner<'_>) -> Result<T>,
+    ) -> Result<T> {
+        let known = |stage| self.ground.of(stage, watch);
         let mut grounds: Vec<(Target<'_>, Reference)> = stages.iter().map(known).collect::<Result<_>>()?;
         grounds.retain(|(_, reference)| reference.truth.mean().iter().any(|&radiance| radiance != Vec3::ZERO));
         if grounds.is_empty() {
@@ -74,16 +90,29 @@ impl Search<'_> {
         }
         let cities: Vec<City<'_>> =
             grounds.iter().map(|(target, reference)| City { target, truth: &reference.truth }).collect();
-        let Self { engine, time_s, seed, .. } = *self;
-        let tuner = Tuner { engine, cities: &cities, time_s, passes: &passes, runs: RUNS, seed };
-        tuner.all(grids, condition, self.program.clone(), watch)
+        let Self { engine, time_s, seed, ground, .. } = *self;
+        tune(&Tuner { engine, cities: &cities, time_s, passes: ground.passes, runs: RUNS, seed })
     }
 }
 
-/// The numbers of passes that a run may have: powers of two, and half as many more.
-fn passes(most: u32) -> Vec<u32> {
+impl Ground<'_> {
+    /// A stage measured at some of its receivers, and what is true there.
+    ///
+    /// # Errors
+    /// As [`Reference::bounded`].
+    pub(crate) fn of<'s>(&self, stage: &'s Stage, watch: &dyn Observer) -> Result<(Target<'s>, Reference)> {
+        let target = Target::whole(stage).thinned(self.pixels).after(self.passes.iter().copied());
+        let wanted = Wanted { work_s: REFERENCE_S.min(self.reference_work_s), ..Wanted::new(OWN_REL_MSE) };
+        Reference::bounded(&target, wanted, self.cache, watch)
+    }
+}
+
+/// The numbers of passes that a run may have: powers of two, and half as many more. Where receivers move, no more than
+/// [`MOST_MOVING`].
+pub(crate) fn passes(most: u32, moves: bool) -> Vec<u32> {
     let twos = (0..31).map(|power| 1u32 << power);
     let mut all: Vec<u32> = twos.flat_map(|passes| [passes, passes / 2 * 3]).filter(|&passes| passes > 0).collect();
+    let most = if moves { most.min(MOST_MOVING) } else { most };
     all.retain(|&passes| passes <= most);
     all
 }
@@ -94,9 +123,9 @@ mod tests {
 
     #[test]
     fn passes_are_powers_of_two_and_half_as_many_more() {
-        assert_eq!(passes(64), [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64]);
-        assert_eq!(passes(5), [1, 2, 3, 4]);
-        assert_eq!(passes(1), [1]);
-        assert!(passes(1 << 24).is_sorted());
+        assert_eq!(passes(64, false), [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64]);
+        assert_eq!(passes(5, true), [1, 2, 3, 4]);
+        assert_eq!(passes(1, false), [1]);
+        assert!(passes(1 << 24, false).is_sorted());
     }
 }

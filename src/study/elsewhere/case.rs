@@ -2,9 +2,8 @@
 
 use super::super::session::Session;
 use crate::base::error::{Error, Result};
-use crate::measure::reference::{Reference, Wanted};
-use crate::measure::target::Target;
 use crate::measure::tune;
+use crate::measure::tuning_cities::{CITIES, Ground, PIXELS, passes};
 use crate::scene::Scene;
 use crate::sources::city::View;
 use crate::sources::{self, Overrides};
@@ -13,18 +12,11 @@ use crate::visibility::stage::{LeaveOut, Stage};
 use crate::visibility::visits::Receivers;
 use std::path::Path;
 
-/// Cities that are reported, and others that parameters are found on.
-pub(super) const CITIES: usize = 5;
-/// Receivers of a frame that errors are taken at.
-const PIXELS: usize = 512;
 /// Pixels across and down where nobody says otherwise.
 const RESOLUTION: (u32, u32) = (96, 54);
-/// The numbers of passes that a run may have. Where receivers move, the truth must be known at all that the most of them visit.
-const STAYING: &[u32] = &[1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128];
-const MOVING: &[u32] = &[1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
-/// Most counted work of a case's reference, in nominal seconds, and its own relMSE where that allows.
-const REFERENCE_S: f64 = 24.0;
-const OWN_REL_MSE: f64 = 1e-5;
+/// Most passes of a run. Where receivers move, the truth must be known at all that they visit.
+const STAYING: u32 = 128;
+const MOVING: u32 = 32;
 
 /// All cases of a study.
 #[derive(Clone, Copy)]
@@ -102,15 +94,19 @@ impl Size<'_> {
     }
 
     /// The numbers of passes that a run may have, ascending.
-    pub(super) fn passes(&self) -> &'static [u32] {
-        if self.receivers.moves() { MOVING } else { STAYING }
+    pub(super) fn passes(&self) -> Vec<u32> {
+        let moves = self.receivers.moves();
+        passes(if moves { MOVING } else { STAYING }, moves)
     }
 
-    /// What is measured of a stage, and what is true there.
-    pub(super) fn target<'s>(&self, stage: &'s Stage) -> Result<(Target<'s>, Reference)> {
+    /// Where errors are taken, and against what, after these numbers of passes.
+    pub(super) fn ground<'s>(&'s self, passes: &'s [u32]) -> Ground<'s> {
         let session = self.cases.session;
-        let target = Target::whole(stage).thinned(session.pixels(PIXELS)).after(self.passes().iter().copied());
-        let wanted = Wanted { work_s: REFERENCE_S, ..Wanted::new(OWN_REL_MSE) };
-        Reference::bounded(&target, wanted, &session.options.cache, session.watch)
+        Ground {
+            passes,
+            pixels: session.pixels(PIXELS),
+            reference_work_s: f64::INFINITY,
+            cache: &session.options.cache,
+        }
     }
 }

@@ -38,7 +38,8 @@ pub(super) fn case(
         return Ok(());
     }
     let stage = size.reported(city)?;
-    let (target, reference) = size.target(&stage)?;
+    let allowed = size.passes();
+    let (target, reference) = size.ground(&allowed).of(&stage, session.watch)?;
     let defaults = || grids.iter().map(|grid| &grid[0]);
     // What is found best may be the default: measured once, it stands in both rows.
     let mut strategies: Vec<&Configured> = defaults().collect();
@@ -47,14 +48,14 @@ pub(super) fn case(
             strategies.push(one);
         }
     }
-    let (time_s, allowed, seed) = (size.cases.time_s, size.passes(), session.options.seed);
+    let (time_s, seed) = (size.cases.time_s, session.options.seed);
     session.watch.begin("counting", strategies.len() as u64);
     let key_of_counts = RunKey { seed: hash(&[seed, city as u64]), run: u32::MAX };
     let works: Vec<Affordable> = strategies
         .iter()
         .map(|strategy| {
             session.watch.check()?;
-            let work = session.engine().alone(|_| Work::next_to(&target, strategy, key_of_counts, time_s, allowed))?;
+            let work = session.engine().alone(|_| Work::next_to(&target, strategy, key_of_counts, time_s, &allowed))?;
             session.watch.advance(1);
             Ok(work)
         })

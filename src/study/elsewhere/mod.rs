@@ -25,10 +25,11 @@ use super::session::Session;
 use super::sizes::sizes;
 use crate::base::claim::Claim;
 use crate::base::error::{Error, Result};
+use crate::measure::tuning_cities::CITIES;
 use crate::record::study::Study;
 use crate::strategy::Configured;
 use crate::visibility::visits::Receivers;
-use case::{CITIES, Cases};
+use case::Cases;
 
 pub(super) const ENTRY: Entry = Entry {
     name: "elsewhere",

@@ -1,7 +1,8 @@
 //! What stands in the tables of `study elsewhere`?
 
 use super::super::columns::{column, interval, plot};
-use super::case::{CITIES, Cases};
+use super::case::Cases;
+use crate::measure::tuning_cities::CITIES;
 use crate::record::study::{ColumnRecord, Format, TableRecord};
 use crate::strategy::Configured;
 use crate::visibility::visits::Receivers;

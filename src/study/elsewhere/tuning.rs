@@ -1,20 +1,15 @@
 //! Which parameters are best, and what do they lose in cities that they were not found in?
 
 use super::super::cells::cells;
-use super::case::{CITIES, Size};
+use super::case::Size;
 use crate::base::error::Result;
-use crate::measure::reference::Reference;
-use crate::measure::target::Target;
-use crate::measure::tune::{City, Tuner};
+use crate::measure::tuning_cities::{CITIES, Search};
 use crate::record::Interval;
 use crate::record::study::Cell;
 use crate::record::study_store::StudyWriter;
 use crate::record::tuned::{TunedPoint, TunedStrategy};
 use crate::strategy::Configured;
 use crate::visibility::stage::Stage;
-
-/// Runs on each city that a choice rests on.
-const RUNS: u32 = 6;
 
 /// The strategies at what is found best for a size, in the order of their grids: found now, or by the study before it was
 /// interrupted. One that no point of its grid can be measured at stays at its default.
@@ -49,18 +44,15 @@ pub(super) fn best(size: &Size<'_>, writer: &mut StudyWriter, grids: &[Vec<Confi
 fn on(size: &Size<'_>, grids: &[Vec<Configured>], open: &dyn Fn(usize) -> Result<Stage>) -> Result<Vec<TunedStrategy>> {
     let session = size.cases.session;
     let stages: Vec<Stage> = (0..CITIES).map(open).collect::<Result<_>>()?;
-    let grounds: Vec<(Target<'_>, Reference)> = stages.iter().map(|stage| size.target(stage)).collect::<Result<_>>()?;
-    let cities: Vec<City<'_>> = grounds.iter().map(|(target, known)| City { target, truth: &known.truth }).collect();
-    let engine = session.engine();
-    let tuner = Tuner {
+    let (engine, passes) = (session.engine(), size.passes());
+    let search = Search {
         engine: &engine,
-        cities: &cities,
         time_s: size.cases.time_s,
-        passes: size.passes(),
-        runs: RUNS,
         seed: session.options.seed,
+        ground: size.ground(&passes),
+        program: session.options.program.clone(),
     };
-    grids.iter().map(|grid| tuner.tune(grid, session.watch)).collect()
+    search.with(&stages, session.watch, |tuner| grids.iter().map(|grid| tuner.tune(grid, session.watch)).collect())
 }
 
 /// Fills the table of what the best parameters lose where they were not found, for the size in the middle.
