@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     passes: u32,
     /// Most counted work of a strategy in a run, in seconds at the committed rates: the same on every machine. One that
-    /// cannot do all passes in them does fewer: 1, 4, 16 and so on. Of `elsewhere` every run takes 0.12 times as long
+    /// cannot do all passes in them does fewer: 1, 4, 16 and so on. Of `elsewhere` every run takes 0.1 times as long
     #[arg(long, value_name = "S", default_value = "1", value_parser = seconds)]
     seconds: f64,
     /// Independent runs; half as many of `elsewhere`

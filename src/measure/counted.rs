@@ -30,7 +30,7 @@ pub(crate) struct Work {
 const DEAREST: f64 = 4.0;
 
 /// Passes that work is counted over.
-const COUNTED: u32 = 3;
+const COUNTED: u32 = 2;
 
 /// How many times dearer than it is a strategy may seem at some squares of the frame: room for those that share work among
 /// neighbours further apart than a square, as `visible`.

@@ -16,7 +16,7 @@ use std::path::Path;
 /// How many cities are tuned on.
 pub(crate) const CITIES: usize = 5;
 /// Runs on each city that a choice rests on, as in `study elsewhere`.
-pub(crate) const RUNS: u32 = 6;
+pub(crate) const RUNS: u32 = 4;
 
 /// Receivers of a frame that errors are taken at.
 pub(crate) const PIXELS: usize = 512;

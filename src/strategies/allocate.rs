@@ -36,7 +36,7 @@ impl Strategy for Allocate {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "rays={2,4,8,16,32,64}";
+    const GRID: &'static str = "rays={4,16,64}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let rays = "points on triangles a receiver and pass, on average over the image";
@@ -57,6 +57,9 @@ const LEAST: f64 = 1e-6;
 
 /// Most points on one triangle in one pass.
 const MOST: f64 = 16_384.0;
+
+/// A triangle's importance and its solid angle take as long as so many importances alone.
+const WEIGHED: u64 = 5;
 
 /// Receivers times lights that the mean number of points is taken over, about.
 const PAIRS: usize = 1_000_000;
@@ -145,7 +148,7 @@ impl LightSampler for Sampler {
     type Scratch = Vec<f64>;
 
     fn arrive<T: Tally>(&self, at: &Receiver, ends: &mut Vec<f64>, tally: &mut T) {
-        tally.weighed(self.triangles.len() as u64);
+        tally.weighed(WEIGHED * self.triangles.len() as u64);
         ends.clear();
         let mut end = 0.0;
         ends.extend(self.points(at).map(|points| {

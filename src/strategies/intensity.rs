@@ -26,7 +26,7 @@ impl Strategy for Intensity {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,4,8,16,32}";
+    const GRID: &'static str = "picks={1,4,16,64}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         Ok(Self { picks: arguments.count("picks", 1, 1..=1024, "lights drawn a pass")? })

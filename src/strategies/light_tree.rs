@@ -30,7 +30,7 @@ impl Strategy for LightTree {
         claim: Claim::Unbiased,
     };
     type Sampler = Box<dyn AnySampler>;
-    const GRID: &'static str = "picks={1,4,8,16,32},open={16,64}";
+    const GRID: &'static str = "picks={1,4,16,64},open={16,64}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let picks = arguments.count("picks", 1, 1..=1024, "lights drawn a pass; of each cluster, with split")?;

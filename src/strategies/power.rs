@@ -25,7 +25,7 @@ impl Strategy for Power {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,2,4,8,16},mix={0,0.25}";
+    const GRID: &'static str = "picks={1,4,16,64},mix={0,0.25}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let picks = arguments.count("picks", 1, 1..=1024, "lights drawn a pass")?;

@@ -25,7 +25,7 @@ impl Strategy for Resampled {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,4,8},m={4,8,16,32}";
+    const GRID: &'static str = "picks={1,4,16},m={8,32}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let recipe = Recipe::configure(arguments)?;

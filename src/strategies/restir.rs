@@ -62,7 +62,7 @@ impl Strategy for Restir {
         claim: Claim::Unbiased,
     };
     type Sampler = PerPass<Sampler>;
-    const GRID: &'static str = "m={4,16,64},neighbours={2,5,10}";
+    const GRID: &'static str = "m={4,16,64},neighbours={2,5}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let recipe = Recipe::configure(arguments)?;

@@ -28,7 +28,7 @@ impl Strategy for StochasticLightcuts {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "cut={2,8,32,64,128,256}";
+    const GRID: &'static str = "cut={8,32,64,128}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         Ok(Self { cut: arguments.count("cut", 8, 2..=4096, "most clusters of a cut; one light is picked from each")? })

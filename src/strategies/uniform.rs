@@ -20,7 +20,7 @@ impl Strategy for Uniform {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,2,4,8,16}";
+    const GRID: &'static str = "picks={1,4,16,64}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         Ok(Self { picks: arguments.count("picks", 1, 1..=1024, "lights drawn a pass")? })

@@ -45,7 +45,7 @@ impl Strategy for StochasticCull {
         claim: Claim::Unbiased,
     };
     type Sampler = Box<dyn AnySampler>;
-    const GRID: &'static str = "picks={4,8,16,32},cutoff={0.5,2,8}";
+    const GRID: &'static str = "picks={4,16,64},cutoff={0.5,2,8}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         let words = ["pass", "receiver"];

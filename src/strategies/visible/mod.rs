@@ -65,7 +65,7 @@ impl Strategy for Visible {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,4,8,16,32},cut={64,256}";
+    const GRID: &'static str = "picks={1,4,16,64},cut={64,256}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
         // Half or twice a default, of `least` a quarter or four times, costs a sixth of error x CPU s at most, in the mean of two

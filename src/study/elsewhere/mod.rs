@@ -43,7 +43,7 @@ const SCENE: &str = "scenes/downtown.toml";
 const FEWEST: u64 = 1_000;
 const MOST: u64 = 100_000;
 /// A run's share of the counted seconds and of the runs that are asked for: there are many of them.
-const TIME: f64 = 0.12;
+const TIME: f64 = 0.1;
 const RUNS: u32 = 2;
 
 fn run(session: &Session<'_>) -> Result<Study> {
