@@ -20,7 +20,7 @@ use crate::measure::engine::Engine;
 use crate::measure::image_store::ImageStore;
 use crate::measure::plan::{Budget, budgets};
 use crate::measure::reference::WORK_S;
-use crate::measure::tuning_cities::{Ground, PIXELS, Search, passes};
+use crate::measure::tuning_cities::{Ground, OWN_REL_MSE, PIXELS, Search, passes};
 use crate::measure::work::RATES;
 use crate::peers::{self, Peer};
 use crate::record::environment;
@@ -188,6 +188,7 @@ impl Session {
             ground: Ground {
                 passes: &passes(arguments.budget.unwrap_or(USUAL_PASSES), arguments.receivers.moves()),
                 pixels: PIXELS,
+                own_rel_mse: OWN_REL_MSE,
                 reference_work_s: arguments.reference_work,
                 cache: &arguments.cache,
             },

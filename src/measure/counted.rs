@@ -1,7 +1,7 @@
 //! How much work is a strategy on a frame, set-up and all, in nominal seconds?
 //!
-//! Counted by the same code that renders, at the committed [rates](super::work): the same on every machine. Counting a whole
-//! frame takes about as long as rendering it; at some squares of it, a part of that.
+//! Counted by the same code that renders, at the committed [rates](super::work): the same on every machine. Counting a pass over a
+//! whole frame takes about as long as rendering it; at some squares of it, a part of that.
 
 use super::target::{Target, squares};
 use super::work::{nominal_s, setup_s};
@@ -26,8 +26,8 @@ pub(crate) struct Work {
     pub counts: Counts,
 }
 
-/// A strategy is too dear where its first image takes more than so many times the time.
-const DEAREST: f64 = 4.0;
+/// A strategy is too dear where less than so much of a pass fits into the time beside set-up and arrivals.
+const LEAST: f64 = 0.25;
 
 /// Passes that work is counted over.
 const COUNTED: u32 = 2;
@@ -52,40 +52,44 @@ impl Work {
     /// A sampler that cannot be built.
     pub(crate) fn at_squares(target: &Target<'_>, fresh: Fresh<'_>, key: RunKey, passes: u32) -> Result<Self> {
         let sampler = fresh()?;
-        let whole = sampler.most_passes() == 1;
-        let some = if whole { target.frame.to_vec() } else { squares(&target.frame, SQUARES) };
-        Ok(Self::counted(target, &some, &*sampler, key, passes))
+        let some = some(target, &*sampler);
+        Ok(Self::counted(target, [&some, &some], &*sampler, key, passes))
     }
 
-    /// Counted over so many passes, at least two, of a target's whole frame.
+    /// The same, with what comes once counted at a target's whole frame.
     ///
     /// # Errors
     /// A sampler that cannot be built.
     pub(crate) fn of_frame(target: &Target<'_>, fresh: Fresh<'_>, key: RunKey, passes: u32) -> Result<Self> {
-        Ok(Self::counted(target, &target.frame, &*fresh()?, key, passes))
+        let sampler = fresh()?;
+        Ok(Self::counted(target, [&target.frame, &some(target, &*sampler)], &*sampler, key, passes))
     }
 
-    /// What a sampler does that nothing was asked of yet. One that learns as receivers come does so once, in the first
-    /// pass: what that takes beyond the same pass made again is no part of a pass.
+    /// What a sampler does that nothing was asked of yet: the first pass at some receivers, and passes at others of them. One
+    /// that learns as receivers come does so once, in the first pass: what that takes beyond another pass is no part of a
+    /// pass.
     fn counted(
         target: &Target<'_>,
-        receivers: &[Receiver],
+        [at_first, later]: [&[Receiver]; 2],
         sampler: &dyn AnySampler,
         key: RunKey,
         passes: u32,
     ) -> Self {
         let setup_s = setup_s(sampler.heap_bytes());
-        let plan = Plan { stage: target.stage, receivers, sampler, key };
-        let count = |passes| plan.run_counting(passes, &mut Film::new(receivers.len()));
-        let scale = target.frame.len() as f64 / receivers.len().max(1) as f64;
-        let seconds = |counts: &Counts| nominal_s(counts) * scale;
-        let first = seconds(&count(1));
-        let counts = count(passes);
+        let count = |receivers: &[Receiver], passes| {
+            let plan = Plan { stage: target.stage, receivers, sampler, key };
+            plan.run_counting(passes, &mut Film::new(receivers.len()))
+        };
+        let seconds = |counts: &Counts, receivers: &[Receiver]| {
+            nominal_s(counts) * target.frame.len() as f64 / receivers.len().max(1) as f64
+        };
+        let first = seconds(&count(at_first, 1), at_first);
+        let counts = count(later, passes);
         // State of one pass is drawn anew for each, and so is every arrival; where receivers move, every pass arrives.
         let pass_s = if sampler.most_passes() == 1 || target.stage.visits().moves() {
-            seconds(&counts) / f64::from(passes)
+            seconds(&counts, later) / f64::from(passes)
         } else {
-            ((seconds(&counts) - seconds(&count(1))) / f64::from(passes - 1)).max(0.0)
+            ((seconds(&counts, later) - seconds(&count(later, 1), later)) / f64::from(passes - 1)).max(0.0)
         };
         Self { setup_s, arrive_s: (first - pass_s).max(0.0), pass_s, counts }
     }
@@ -93,6 +97,12 @@ impl Work {
     /// Nominal seconds from nothing to the image of so many passes in one block.
     pub(crate) fn seconds(&self, passes: u32) -> f64 {
         self.setup_s + self.arrive_s + f64::from(passes) * self.pass_s
+    }
+
+    /// By what to multiply the relMSE of an image of so many passes, and that of `time_s` follows, where it falls as
+    /// 1 / passes: these passes over as many, whole or not, as fit into the time.
+    pub(crate) fn at_time(&self, passes: u32, time_s: f64) -> f64 {
+        f64::from(passes) * self.pass_s / (time_s - self.setup_s - self.arrive_s)
     }
 
     /// The number of passes, of those allowed, whose work comes next to `time_s` on a target's frame, and that work; or why
@@ -107,9 +117,11 @@ impl Work {
         let build = || strategy.build(BuildContext { stage: target.stage, seed: key.seed });
         let within = |work: Result<Self>, times: f64| {
             let work = work.map_err(|error| error.to_string())?;
-            let first_s = work.seconds(1);
-            let dear = format!("one pass is {first_s:.2} s of counted work, more than {DEAREST} times {time_s} s");
-            if first_s > times * DEAREST * time_s { Err(dear) } else { Ok(work) }
+            let least_s = work.setup_s + (work.arrive_s + LEAST * work.pass_s) / times;
+            let dear = format!(
+                "{LEAST} passes with set-up and arrivals are {least_s:.4} s of counted work, more than {time_s} s"
+            );
+            if least_s > time_s { Err(dear) } else { Ok(work) }
         };
         // Counting a whole frame of what takes a hundred times that would take as long.
         within(Self::at_squares(target, &build, key, COUNTED), SEEMING)?;
@@ -123,6 +135,11 @@ impl Work {
         // Of equals the most: what takes nothing may do as much as it can.
         allowed.iter().copied().rev().min_by(|&a, &b| off(a).total_cmp(&off(b))).expect("a number of passes")
     }
+}
+
+/// Some squares of a target's frame; all of it for a sampler that draws state for a pass or looks at its whole frame.
+fn some(target: &Target<'_>, sampler: &dyn AnySampler) -> Vec<Receiver> {
+    if sampler.most_passes() == 1 { target.frame.to_vec() } else { squares(&target.frame, SQUARES) }
 }
 
 #[cfg(test)]
@@ -191,6 +208,18 @@ mod tests {
             let frame = target.frame.len() as f64;
             assert!(work.arrive_s > 0.99 * learned_s, "{work:?}, learning {learned_s}");
             assert!(work.pass_s < 400e-9 * frame, "{work:?} of {frame} receivers");
+        }
+    }
+
+    #[test]
+    fn who_overruns_gains_nothing_by_it() {
+        let work = Work { setup_s: 0.01, arrive_s: 0.09, pass_s: 0.1, counts: Counts::default() };
+        // Five passes fit into 0.6 s, half a one into 0.15 s: with errors of 1 / passes all see what those would have.
+        for (time_s, fits) in [(0.6, 5.0), (0.15, 0.5)] {
+            for passes in [1, 5, 40] {
+                let error = work.at_time(passes, time_s) / f64::from(passes);
+                assert!((error * fits - 1.0).abs() < 1e-9, "{passes} passes, {time_s} s: {error}");
+            }
         }
     }
 

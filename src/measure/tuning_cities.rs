@@ -21,7 +21,7 @@ pub(crate) const RUNS: u32 = 4;
 /// Receivers of a frame that errors are taken at.
 pub(crate) const PIXELS: usize = 512;
 /// The reference's own relMSE, where its work allows: far below any error that a choice rests on.
-const OWN_REL_MSE: f64 = 1e-5;
+pub(crate) const OWN_REL_MSE: f64 = 1e-5;
 /// Most counted work of a city's reference, in nominal seconds.
 const REFERENCE_S: f64 = 24.0;
 /// Most passes where receivers move: the truth must be known at all that they visit.
@@ -34,6 +34,8 @@ pub(crate) struct Ground<'a> {
     pub passes: &'a [u32],
     /// Most receivers of the frame that errors are taken at.
     pub pixels: usize,
+    /// The reference's own relMSE, where its work allows; where receivers move, that after the fewest passes.
+    pub own_rel_mse: f64,
     /// Most counted work of a city's reference, in nominal seconds, where that is less than usual.
     pub reference_work_s: f64,
     /// Folder of cached references.
@@ -102,7 +104,9 @@ impl Ground<'_> {
     /// As [`Reference::bounded`].
     pub(crate) fn of<'s>(&self, stage: &'s Stage, watch: &dyn Observer) -> Result<(Target<'s>, Reference)> {
         let target = Target::whole(stage).thinned(self.pixels).after(self.passes.iter().copied());
-        let wanted = Wanted { work_s: REFERENCE_S.min(self.reference_work_s), ..Wanted::new(OWN_REL_MSE) };
+        // It falls as 1 / passes where each has receivers of its own; what is asked for is that after the most.
+        let most = target.budgets().last().map_or(1.0, |&most| f64::from(most));
+        let wanted = Wanted { work_s: REFERENCE_S.min(self.reference_work_s), ..Wanted::new(self.own_rel_mse / most) };
         Reference::bounded(&target, wanted, self.cache, watch)
     }
 }

@@ -130,7 +130,7 @@ pub(crate) struct OnCity {
     /// Their mean relMSE.
     #[serde(with = "number")]
     pub rel_mse: f64,
-    /// relMSE times nominal CPU seconds, as it counts in the score.
+    /// V as it counts in the score: relMSE at the time, times the time.
     pub v: f64,
 }
 

@@ -1,11 +1,12 @@
 //! Which parameters of a strategy reach the least error in a given time?
 //!
 //! Every point of a grid has the number of passes, of those allowed, whose nominal seconds, set-up in, come next to the time. Its score on a
-//! city is V, the mean relMSE of its runs times these seconds; over cities, the geometric mean. Time is counted, not taken: the
-//! same seed finds the same parameters on every machine, with any number of threads.
+//! city is V at the time: the time, times the mean relMSE of its runs, times their passes over those that fit into the time beside set-up and
+//! arrivals. So who overruns does not gain by it, though set-up is then a smaller part. Over cities, it is the geometric mean. Time is
+//! counted, not taken: the same seed finds the same parameters on every machine, with any number of threads.
 //!
-//! A biased strategy's error does not fall as 1 / time, so that its score is relMSE at the time; a pass that takes longer
-//! is charged for that.
+//! A biased strategy's error does not fall as 1 / passes, so that its score is the relMSE of its runs; a pass that takes longer
+//! than the time is charged for that.
 //!
 //! Who is the least of many by chance looks better than it is. So the choice rests on runs of its own, few of many points and
 //! more of those that are left, and the scores of the best, of the next and of the default are of fresh runs, that none of
@@ -174,6 +175,7 @@ impl Tuner<'_> {
             if let Some(works) = works.into_iter().collect::<Option<Vec<(u32, Work)>>>() {
                 point.passes = works.iter().map(|&(passes, _)| passes).collect();
                 point.seconds = works.iter().map(|(passes, work)| work.seconds(*passes)).collect();
+                point.at_time = works.iter().map(|(passes, work)| work.at_time(*passes, self.time_s)).collect();
             }
         }
         Ok(points)

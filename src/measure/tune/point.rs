@@ -13,6 +13,8 @@ pub(super) struct Point<'g> {
     pub(super) passes: Vec<u32>,
     /// Nominal seconds of a run, set-up in.
     pub(super) seconds: Vec<f64>,
+    /// What brings the relMSE of a run to the time: see [`Work::at_time`](super::super::counted::Work::at_time).
+    pub(super) at_time: Vec<f64>,
     /// The relMSE of each run.
     pub(super) errors: Vec<Vec<f64>>,
     /// The score that it was chosen by, where its errors are of fresh runs.
@@ -29,11 +31,11 @@ const LEAST: f64 = 1e-14;
 impl<'g> Point<'g> {
     /// One that nothing is known of.
     pub(super) fn new(strategy: &'g Configured, cities: usize) -> Self {
-        let (passes, seconds) = (Vec::new(), Vec::new());
         Self {
             strategy,
-            passes,
-            seconds,
+            passes: Vec::new(),
+            seconds: Vec::new(),
+            at_time: Vec::new(),
             errors: vec![Vec::new(); cities],
             chosen_by: None,
             out: None,
@@ -57,11 +59,12 @@ impl<'g> Point<'g> {
         Moments::of(self.errors[city].iter().copied()).mean
     }
 
-    /// relMSE times nominal seconds on a city; of a biased strategy times `time_s`, where a run takes no longer.
+    /// relMSE at the time, times the time, on a city; of a biased strategy that of the run, whose error falls otherwise,
+    /// times its seconds, where they are more.
     fn v(&self, city: usize, time_s: f64) -> f64 {
-        let seconds = self.seconds[city];
         let biased = self.strategy.info().claim.may_be_biased();
-        self.rel_mse(city).max(LEAST) * if biased { seconds.max(time_s) } else { seconds }
+        let times = if biased { self.seconds[city].max(time_s) } else { self.at_time[city] * time_s };
+        self.rel_mse(city).max(LEAST) * times
     }
 
     /// The geometric mean of V over the cities.

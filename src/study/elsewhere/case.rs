@@ -15,15 +15,17 @@ use std::path::Path;
 /// Pixels across and down where nobody says otherwise.
 const RESOLUTION: (u32, u32) = (96, 54);
 /// Most passes of a run. Where receivers move, the truth must be known at all that they visit.
-const STAYING: u32 = 128;
-const MOVING: u32 = 32;
+pub(super) const STAYING: u32 = 128;
+pub(super) const MOVING: u32 = 8;
 
 /// All cases of a study.
 #[derive(Clone, Copy)]
 pub(super) struct Cases<'a> {
     pub(super) session: &'a Session<'a>,
     pub(super) recipe: &'a Path,
-    /// Nominal seconds of a run, set-up in.
+    /// Lights of the smallest cities.
+    pub(super) fewest: u64,
+    /// Nominal seconds of a run among the fewest lights, set-up in.
     pub(super) time_s: f64,
     /// Independent runs of a strategy in a case.
     pub(super) runs: u32,
@@ -72,6 +74,14 @@ pub(super) fn view(city: usize) -> View {
 }
 
 impl Size<'_> {
+    /// Nominal seconds of a run, set-up in: half as many more for ten times the lights, whose set-up would else take most of
+    /// them.
+    pub(super) fn time_s(&self) -> f64 {
+        let tens =
+            (0..).take_while(|&tens| self.cases.fewest.saturating_mul(10u64.pow(tens + 1)) <= self.lights).count();
+        self.cases.time_s * 1.5f64.powi(tens as i32)
+    }
+
     /// The n-th city that is reported.
     pub(super) fn reported(&self, city: usize) -> Result<Stage> {
         self.stage(self.cases.reported(self.lights, city)?)
@@ -99,12 +109,13 @@ impl Size<'_> {
         passes(if moves { MOVING } else { STAYING }, moves)
     }
 
-    /// Where errors are taken, and against what, after these numbers of passes.
-    pub(super) fn ground<'s>(&'s self, passes: &'s [u32]) -> Ground<'s> {
+    /// Where errors are taken, and against what, to this relMSE, after these numbers of passes.
+    pub(super) fn ground<'s>(&'s self, passes: &'s [u32], own_rel_mse: f64) -> Ground<'s> {
         let session = self.cases.session;
         Ground {
             passes,
             pixels: session.pixels(PIXELS),
+            own_rel_mse,
             reference_work_s: f64::INFINITY,
             cache: &session.options.cache,
         }

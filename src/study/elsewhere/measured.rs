@@ -14,6 +14,9 @@ use crate::record::study::{Cell, Cells};
 use crate::record::study_store::StudyWriter;
 use crate::strategy::Configured;
 
+/// The truth's own relMSE, where its work allows; where receivers move, that after one pass.
+const OWN_REL_MSE: f64 = 1e-6;
+
 /// Counted work that is so many times more or less than the time is said.
 const UNEQUAL: f64 = 1.5;
 
@@ -39,7 +42,7 @@ pub(super) fn case(
     }
     let stage = size.reported(city)?;
     let allowed = size.passes();
-    let (target, reference) = size.ground(&allowed).of(&stage, session.watch)?;
+    let (target, reference) = size.ground(&allowed, OWN_REL_MSE).of(&stage, session.watch)?;
     let defaults = || grids.iter().map(|grid| &grid[0]);
     // What is found best may be the default: measured once, it stands in both rows.
     let mut strategies: Vec<&Configured> = defaults().collect();
@@ -48,7 +51,7 @@ pub(super) fn case(
             strategies.push(one);
         }
     }
-    let (time_s, seed) = (size.cases.time_s, session.options.seed);
+    let (time_s, seed) = (size.time_s(), session.options.seed);
     session.watch.begin("counting", strategies.len() as u64);
     let key_of_counts = RunKey { seed: hash(&[seed, city as u64]), run: u32::MAX };
     let works: Vec<Affordable> = strategies
@@ -104,8 +107,13 @@ fn figures(runs: &Runs, work: &Affordable, time_s: f64, target: &Target<'_>, ref
     }
     let rows = runs.at(*passes);
     let seconds = || mean(&rows, Row::total_cpu_s);
-    let v = Figure::of(vec![error(&rows), seconds()], |parts| parts[0] * parts[1]);
     let (counted_s, own) = (work.seconds(*passes), reference.truth.after(*passes).own_rel_mse());
+    if error(&rows).estimate <= own {
+        return nothing(&format!("the error is not above the truth's own, {own:.1e}"));
+    }
+    // What it would be in just that time: see `Work::at_time`.
+    let at_time = work.at_time(*passes, time_s) * time_s / counted_s;
+    let v = Figure::of(vec![error(&rows), seconds()], move |parts| parts[0] * parts[1] * at_time);
     let mut row: Cells =
         vec![u64::from(*passes).into(), (target.places.len() as u64).into(), own.into(), counted_s.into()];
     row.extend(cells(error(&rows).interval()));

@@ -54,7 +54,8 @@ fn run(session: &Session<'_>) -> Result<Study> {
         return Err(Error::Invalid("study elsewhere takes one recipe: a single --scene is right".into()));
     };
     let sizes = sizes(FEWEST, options.max_lights.min(MOST));
-    let cases = Cases { session, recipe, time_s: TIME * options.seconds, runs: (options.repeats / RUNS).max(2) };
+    let (time_s, runs) = (TIME * options.seconds, (options.repeats / RUNS).max(2));
+    let cases = Cases { session, recipe, fewest: FEWEST, time_s, runs };
     // Read once before anything is measured: what has no city, or no room for a view, must not cost an hour.
     let views = cases.first(sizes[0])?;
     let mut writer = session.open(&views, tables::all(&cases, &grids))?;

@@ -1,7 +1,7 @@
 //! What stands in the tables of `study elsewhere`?
 
 use super::super::columns::{column, interval, plot};
-use super::case::Cases;
+use super::case::{Cases, MOVING, STAYING};
 use crate::measure::tuning_cities::CITIES;
 use crate::record::study::{ColumnRecord, Format, TableRecord};
 use crate::strategy::Configured;
@@ -61,8 +61,8 @@ fn summary(name: &str, title: &str, base: &str) -> TableRecord {
         columns,
         notes: vec![
             format!(
-                "V is the mean relMSE times the mean CPU seconds of a run, set-up and every arrival in; {base} has 1 in \
-                 every case. Less is better."
+                "V is the mean relMSE times the mean CPU seconds of a run, set-up and every arrival in, at one time for all (see the \
+                 table of cases); {base} has 1 in every case. Less is better."
             ),
             format!(
                 "geometric means over all sizes of {CITIES} cities, seen from a street, a roof and the sky in turn; under `all` over \
@@ -211,10 +211,11 @@ fn measured(cases: &Cases<'_>) -> TableRecord {
         title: "every case".to_owned(),
         columns,
         notes: vec![format!(
-            "{} runs of the number of passes (powers of two and their halves more, at most 128, and 32 where receivers move) whose \
-             counted work, set-up in, comes next to {} s; a pass that takes more than four times that is not run. Where the counted time is more than 1.5 times more or less, the remark says so: rows are \
-             compared by V, which does not depend on the time as long as errors fall as 1 / time. CPU ms: set-up \
-             and every arrival in. relMSE at so many pixels.",
+            "{} runs of the number of passes (powers of two and their halves more, at most {STAYING}, and {MOVING} where receivers move) \
+             whose counted work, set-up in, comes next to a time T: {} s among the fewest lights, and half as long again for ten times as many. \
+             V is relMSE times CPU seconds, brought to T: times the passes over those that fit into T beside set-up and arrivals. A \
+             strategy of which a quarter of a pass does not fit is not run. Where the counted time is more than 1.5 times more or less, \
+             the remark says so. CPU ms: set-up and every arrival in. relMSE at so many pixels.",
             cases.runs, cases.time_s
         )],
         plots: Vec::new(),

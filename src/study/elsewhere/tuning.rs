@@ -3,7 +3,7 @@
 use super::super::cells::cells;
 use super::case::Size;
 use crate::base::error::Result;
-use crate::measure::tuning_cities::{CITIES, Search};
+use crate::measure::tuning_cities::{CITIES, OWN_REL_MSE, Search};
 use crate::record::Interval;
 use crate::record::study::Cell;
 use crate::record::study_store::StudyWriter;
@@ -47,9 +47,9 @@ fn on(size: &Size<'_>, grids: &[Vec<Configured>], open: &dyn Fn(usize) -> Result
     let (engine, passes) = (session.engine(), size.passes());
     let search = Search {
         engine: &engine,
-        time_s: size.cases.time_s,
+        time_s: size.time_s(),
         seed: session.options.seed,
-        ground: size.ground(&passes),
+        ground: size.ground(&passes, OWN_REL_MSE),
         program: session.options.program.clone(),
     };
     search.with(&stages, session.watch, |tuner| grids.iter().map(|grid| tuner.tune(grid, session.watch)).collect())
@@ -80,15 +80,19 @@ pub(super) fn loss(
         Ok(if same { vec![parse(elsewhere)?] } else { vec![parse(elsewhere)?, parse(there)?] })
     };
     let pairs: Vec<Vec<Configured>> = best.iter().zip(&there).map(pair).collect::<Result<_>>()?;
-    let scored = on(size, &pairs, &reported)?;
-    let row = |((grid, pair), found): ((&Vec<Configured>, &Vec<Configured>), &TunedStrategy)| {
+    let other = pairs.iter().filter(|pair| pair.len() > 1);
+    let other: Vec<Vec<Configured>> = other.map(|pair| pair.iter().map(parse).collect()).collect::<Result<_>>()?;
+    let scored = if other.is_empty() { Vec::new() } else { on(size, &other, &reported)? };
+    let mut scored = scored.iter();
+    let row = |(grid, pair): (&Vec<Configured>, &Vec<Configured>)| {
         let mut row: Vec<Cell> = vec![key[0].1.clone(), key[1].1.clone(), grid[0].name().into()];
         row.extend([pair[0].name().into(), pair[pair.len() - 1].name().into()]);
-        row.extend(cells(if pair.len() == 1 { Some(Interval::certain(1.0)) } else { over_other(found) }));
-        row.push(why_not(found));
+        let found = if pair.len() > 1 { scored.next() } else { None };
+        row.extend(cells(found.map_or(Some(Interval::certain(1.0)), over_other)));
+        row.push(found.map_or(Cell::Missing, why_not));
         row
     };
-    writer.put("loss", &key, grids.iter().zip(&pairs).zip(&scored).map(row).collect())
+    writer.put("loss", &key, grids.iter().zip(&pairs).map(row).collect())
 }
 
 /// The score of the first of two points over the other's, whichever was chosen; without an interval where one of them was
