@@ -105,6 +105,15 @@ impl<const N: usize> Tree<N> {
         (1 + 2 * most / N).min(self.nodes.len())
     }
 
+    /// The light that is alone in a slot; none of a cluster or an empty slot.
+    #[inline]
+    pub(crate) fn light_alone(&self, node: u32, slot: usize) -> Option<LightId> {
+        match self.nodes[node as usize].slot(slot) {
+            Slot::Light(light) => Some(light),
+            Slot::Node(_) | Slot::Empty => None,
+        }
+    }
+
     /// Whether there is any directional light.
     pub(crate) fn has_directional(&self) -> bool {
         !self.directional.is_empty()

@@ -38,6 +38,7 @@ use super::parts::walks::{self, OPEN, Walks};
 use crate::base::draws::Draws;
 use crate::base::error::Result;
 use crate::base::random::hash;
+use crate::scene::light::Kind;
 use crate::scene::receiver::Receiver;
 use crate::strategy::{Arguments, BuildContext, Claim, Info, LightSampler, Picks, Strategy, Tally, Uncounted};
 use crate::tree::{Facing, How, USED_UP};
@@ -45,7 +46,7 @@ use cells::Cells;
 use learned::{Lesson, School, Table, WIDTH};
 use weighed::Weighed;
 
-/// `picks` lights by tables of what each place sees.
+/// About `picks` lights by tables of what each place sees.
 pub(crate) struct Visible {
     /// Side of a cell in metres.
     cell: f32,
@@ -145,6 +146,8 @@ impl Sampler {
         });
         tree.walk(at, memory, tally).arrive();
         weighed.weigh(table, tree, at, memory, tally);
+        let lights = self.target.scene().lights();
+        weighed.settle(self.picks, tree, |light| lights[light as usize].kind() == Kind::Triangle, tally);
         true
     }
 }
@@ -163,12 +166,19 @@ impl LightSampler for Sampler {
         if !scratch.learned {
             return self.tree.sample(at, draws, &mut scratch.tree, out);
         }
+        for &(light, count) in scratch.weighed.certain() {
+            // All points of one light in all passes are one sequence.
+            for j in 0..count {
+                out.push_at(light, 1.0 / count as f32, draws.nested(j, count, |draws| draws.point_of(1 << 31 | light)));
+            }
+        }
         let memory = &mut scratch.tree.memory;
-        for j in 0..self.picks {
-            let Some((element, share, left)) = scratch.weighed.pick(draws.choice(j, self.picks)) else { return };
+        let picks = scratch.weighed.left();
+        for j in 0..picks {
+            let Some((element, share, left)) = scratch.weighed.pick(draws.choice(j, picks)) else { return };
             let left = if share < USED_UP { draws.stream().uniform64() } else { left };
             if let Some((light, pmf)) = self.tree.tree().walk(at, memory, out.tally).pick_in(element, left, draws) {
-                let count = f64::from(self.picks) * share * pmf;
+                let count = f64::from(picks) * share * pmf;
                 out.push(light, ((1.0 / count) as f32).min(f32::MAX));
             }
         }
@@ -179,8 +189,9 @@ impl LightSampler for Sampler {
         if !self.weigh(at, &mut scratch, &mut Uncounted) {
             return self.tree.expected_counts(at, counts);
         }
+        scratch.weighed.certain().iter().for_each(|&(light, count)| counts[light as usize] += count as f32);
         for (element, share) in scratch.weighed.elements() {
-            let scale = f64::from(self.picks) * share;
+            let scale = f64::from(scratch.weighed.left()) * share;
             self.tree.tree().expect_in(element, at, scale, &scratch.tree.memory, counts);
         }
         true
@@ -188,5 +199,48 @@ impl LightSampler for Sampler {
 
     fn heap_bytes(&self) -> usize {
         self.tree.heap_bytes() + self.cells.heap_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::base::random::RunKey;
+    use crate::scene::light::Kind;
+    use crate::sources::{self, Overrides};
+    use crate::strategy::{BuildContext, Frame, PickBuffer, Registry};
+    use crate::visibility::offset::Offset;
+    use crate::visibility::stage::{LeaveOut, Stage};
+    use std::path::Path;
+
+    #[test]
+    fn lights_that_are_expected_get_whole_numbers_of_picks_in_every_pass() {
+        let few = Overrides { resolution: Some((32, 18)), ..Overrides::default() };
+        let scene = sources::open(Path::new("scenes/first-night.toml"), &few).expect("a scene");
+        let stage = Stage::new(scene, LeaveOut::Yes, Offset::SCALED);
+        let (lights, receivers) = (stage.scene().lights(), stage.receivers());
+        let strategy = Registry::standard().parse("visible:picks=16").expect("a strategy");
+        let sampler = strategy.build(BuildContext { stage: &stage, seed: 1 }).expect("a sampler");
+        let begun = sampler.begin(Frame::new(receivers, RunKey { seed: 1, run: 0 }), 0..4);
+        let (mut worker, mut buffer) = (begun.worker(false), PickBuffer::default());
+        let (mut lamps, mut triangles) = (0, 0);
+        for at in receivers {
+            let mut counts = vec![0.0; lights.len()];
+            assert!(sampler.expected_counts(at, &mut counts));
+            let picks: f32 = counts.iter().sum();
+            assert!(picks < 16.0 * 4.0 / 3.0 + 1.0, "{picks} picks");
+            worker.fill(std::slice::from_ref(at), 0..4, true, &mut buffer);
+            // In a cluster others share the chance: by chance alone none is expected a whole number of times.
+            for (light, &count) in (0..).zip(&counts).filter(|(_, count)| **count >= 1.0 && count.fract() == 0.0) {
+                let extended = lights[light as usize].kind() == Kind::Triangle;
+                assert!(count == 1.0 || extended, "lamp {light} is expected {count} times");
+                *(if extended { &mut triangles } else { &mut lamps }) += 1;
+                for call in buffer.calls() {
+                    let picks: Vec<_> = call.iter().filter(|pick| pick.light == light).collect();
+                    assert_eq!(picks.len(), count as usize, "light {light}");
+                    assert!(picks.iter().all(|pick| pick.weight == 1.0 / count));
+                }
+            }
+        }
+        assert!(lamps > 100 && triangles > 100, "{lamps} lamps and {triangles} triangles");
     }
 }
