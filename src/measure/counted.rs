@@ -117,11 +117,11 @@ impl Work {
         let build = || strategy.build(BuildContext { stage: target.stage, seed: key.seed });
         let within = |work: Result<Self>, times: f64| {
             let work = work.map_err(|error| error.to_string())?;
-            let least_s = work.setup_s + (work.arrive_s + LEAST * work.pass_s) / times;
-            let dear = format!(
-                "{LEAST} passes with set-up and arrivals are {least_s:.4} s of counted work, more than {time_s} s"
-            );
-            if least_s > time_s { Err(dear) } else { Ok(work) }
+            let beside_s = work.arrive_s + LEAST * work.pass_s;
+            let least_s = work.setup_s + beside_s;
+            let dear =
+                format!("set-up, arrivals and {LEAST} passes are {least_s:.4} s of counted work, more than {time_s} s");
+            if work.setup_s + beside_s / times > time_s { Err(dear) } else { Ok(work) }
         };
         // Counting a whole frame of what takes a hundred times that would take as long.
         within(Self::at_squares(target, &build, key, COUNTED), SEEMING)?;

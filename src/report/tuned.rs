@@ -102,8 +102,8 @@ fn sheet(tuned: &Tuned) -> Sheet {
     let below = [
         "nominal s a pass: counted work of a run, set-up in, over its passes. It and relMSE x passes are geometric means over \
          the cities.",
-        "V: relMSE x nominal seconds of a run; of a biased strategy no less than the time, in which its noise alone would \
-         have gone on falling.",
+        "V: the time x relMSE of a run x its passes over those, whole or not, that fit into the time beside set-up and arrivals; of \
+         a biased strategy relMSE x nominal seconds of a run, the time at least, in which its noise alone would have gone on falling.",
         "V over the best's: of the default it is what tuning gains. ±9 % or -8 +15 %: 95 % intervals over cities, by Student's \
          t on the logarithms; without one, a figure of the runs that chose.",
         "Never tuned on what is reported: the rows of the comparison are of other cities.",

@@ -8,6 +8,7 @@ use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
 use citylights::scene::Parts;
+use citylights::scene::light::Kind;
 use citylights::shading::importance::importance;
 use citylights::strategy::{BuildContext, Frame, PickBuffer, Registry};
 use citylights::verify::{Verifier, VerifyOptions};
@@ -76,6 +77,38 @@ fn the_weights_of_each_light_sum_to_one() {
             }
         }
     }
+}
+
+#[test]
+fn lights_that_are_expected_get_whole_numbers_of_picks_in_every_pass() {
+    let stage = stage(courtyard());
+    let sampler = sampler("visible:picks=16", &stage);
+    let begun = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 1, run: 0 }), 0..4);
+    let (mut worker, mut buffer) = (begun.worker(false), PickBuffer::default());
+    let (mut lamps, mut triangles) = (0, 0);
+    for at in stage.receivers() {
+        let mut counts = vec![0.0; stage.scene().lights().len()];
+        assert!(sampler.expected_counts(at, &mut counts));
+        let picks: f32 = counts.iter().sum();
+        assert!(picks < 16.0 * 4.0 / 3.0 + 1.0, "{picks} picks");
+        worker.fill(std::slice::from_ref(at), 0..4, true, &mut buffer);
+        // By chance none is expected a whole number of times, but for what is left alone.
+        for (light, &count) in (0..).zip(&counts).filter(|(_, count)| **count >= 1.0 && count.fract() == 0.0) {
+            let kind = stage.scene().lights()[light as usize].kind();
+            if kind == Kind::Directional {
+                continue;
+            }
+            let extended = kind == Kind::Triangle;
+            *(if extended { &mut triangles } else { &mut lamps }) += 1;
+            for call in buffer.calls() {
+                let picks: Vec<_> = call.iter().filter(|pick| pick.light == light).collect();
+                assert_eq!(picks.len(), count as usize, "light {light}");
+                assert!(picks.iter().all(|pick| pick.weight == 1.0 / count), "{picks:?}");
+            }
+        }
+    }
+    assert!(lamps > 100 && triangles > 10, "{lamps} lamps and {triangles} triangles");
+    assert_kept("visible:picks=16", &stage);
 }
 
 #[test]
