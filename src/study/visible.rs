@@ -45,12 +45,13 @@ const FEWEST: u64 = 1_000;
 const PIXELS: usize = 512;
 
 /// From the literature's tree to what each place sees.
-const STEPS: [(&str, &str); 5] = [
+const STEPS: [(&str, &str); 6] = [
     ("classic tree", "light-tree:arity=2,importance=classic,points=random,open=0"),
     ("+ box horizons, 8 wide", "light-tree:points=random,open=0"),
     ("+ low discrepancy", "light-tree:open=0"),
     ("+ opened at the receiver", "light-tree"),
-    ("+ visibility", "visible"),
+    ("+ visibility", "visible:picks=1"),
+    ("+ 16 picks, whole numbers", "visible"),
 ];
 /// What the others are measured by: all that choice can do, without what is in between and with it.
 const FLOORS: [(&str, &str); 2] = [("floor: intensity", "intensity"), ("floor: oracle", "oracle")];
@@ -60,18 +61,19 @@ const MOST_OF_ORACLE: usize = 110_000;
 /// The scenes that parameters are tried on.
 const SWEPT: [&str; 2] = ["scenes/first-night.toml", "scenes/downtown.toml"];
 /// Each parameter away from its default.
-const SWEEP: [&str; 20] = [
+const SWEEP: [&str; 24] = [
     "visible",
-    "visible:cell=2",
-    "visible:cell=4",
     "visible:cell=16",
     "visible:cell=32",
+    "visible:cell=64",
+    "visible:cell=256",
     "visible:least=1",
-    "visible:least=8",
-    "visible:least=128",
-    "visible:cut=64",
+    "visible:least=16",
+    "visible:least=64",
     "visible:cut=128",
+    "visible:cut=256",
     "visible:cut=512",
+    "visible:cut=2048",
     "visible:probes=1",
     "visible:probes=2",
     "visible:probes=8",
@@ -80,6 +82,9 @@ const SWEEP: [&str; 20] = [
     "visible:floor=0.1",
     "visible:floor=0.4",
     "visible:floor=0.7",
+    "visible:picks=1",
+    "visible:picks=4",
+    "visible:picks=64",
     "light-tree",
 ];
 

@@ -105,10 +105,14 @@ impl<const N: usize> Tree<N> {
         (1 + 2 * most / N).min(self.nodes.len())
     }
 
-    /// The light that is alone in a slot; none of a cluster or an empty slot.
+    /// The light that is alone in an element; none of several.
     #[inline]
-    pub(crate) fn light_alone(&self, node: u32, slot: usize) -> Option<LightId> {
-        match self.nodes[node as usize].slot(slot) {
+    pub(crate) fn light_alone(&self, element: Element) -> Option<LightId> {
+        if element == Element::DIRECTIONAL {
+            return if let [only] = &self.directional[..] { Some(only.light) } else { None };
+        }
+        let (node, slot) = (element.0 as usize / N, element.0 as usize % N);
+        match self.nodes[node].slot(slot) {
             Slot::Light(light) => Some(light),
             Slot::Node(_) | Slot::Empty => None,
         }

@@ -1,8 +1,10 @@
 //! Where is a set of lights best cut in two?
 //!
-//! By buckets along each axis, at the boundary of least cost. Decisions are the same for a scene in another unit of
-//! length, whose coordinates are rounded otherwise: near-ties go to the first, boundaries keep off the regular grids
-//! that cities are made of, and an axis along which the lights hardly differ is left alone.
+//! By buckets along each axis of their places and of the ways that they face, at the boundary of least cost. The headlights of a
+//! street shine along it either way and stand among one another: places alone never tell apart those that shine here.
+//! Decisions are the same for a scene in another unit of length, whose coordinates are rounded otherwise: near-ties go to the
+//! first, boundaries keep off the regular grids that cities are made of, and an axis along which the lights hardly differ is
+//! left alone.
 
 use super::bounds::{Bounds, Item};
 use glam::Vec3A;
@@ -13,6 +15,12 @@ const BUCKETS: usize = 16;
 /// Two costs nearer to each other than this, relatively, are equal.
 pub(super) const TIE: f64 = 1e-5;
 
+/// Lights apart by less than this share of their distance from the origin are so by rounding alone.
+const ROUNDING: f32 = 1e-6;
+
+/// Lights whose unit directions differ by less face one way.
+const ONE_WAY: f32 = 0.01;
+
 /// Reorders the items so that those of one half come first; gives their number, neither 0 nor all. Needs two items or
 /// more.
 pub(super) fn split(items: &mut [Item]) -> usize {
@@ -20,44 +28,84 @@ pub(super) fn split(items: &mut [Item]) -> usize {
     if items.len() == 2 {
         return middle;
     }
-    let mut low = Vec3A::INFINITY;
-    let mut high = Vec3A::NEG_INFINITY;
-    for item in items.iter() {
-        low = low.min(item.centre());
-        high = high.max(item.centre());
-    }
-    let extent = high - low;
-    let longest = extent.max_element();
-    // In one place, or apart by rounding alone: any halves are as good as others.
-    if longest <= 1e-6 * low.abs().max(high.abs()).max_element() {
-        return middle;
-    }
-    let mut best: Option<(f64, usize, usize)> = None;
-    for axis in (0..3).filter(|&axis| extent[axis] > 1e-3 * longest) {
-        let scale = bucket_scale(extent[axis]);
+    let mut best: Option<(f64, Axis, usize)> = None;
+    for axis in axes(items) {
         let mut buckets = [Bounds::NONE; BUCKETS];
-        items.iter().for_each(|item| buckets[bucket(item, axis, low, scale)].add(item));
-        // Thin slices of a long box are penalised, as in the source.
-        let shape = f64::from(longest / extent[axis]);
+        items.iter().for_each(|item| buckets[axis.bucket(item)].add(item));
         for (boundary, cost) in costs(&buckets) {
-            let cost = shape * cost;
+            let cost = axis.shape * cost;
             if best.is_none_or(|(least, ..)| cost < least * (1.0 - TIE)) {
                 best = Some((cost, axis, boundary));
             }
         }
     }
+    // In one place and facing one way: any halves are as good as others.
     let Some((_, axis, boundary)) = best else { return middle };
-    let scale = bucket_scale(extent[axis]);
-    partition(items, |item| bucket(item, axis, low, scale) < boundary)
+    partition(items, |item| axis.bucket(item) < boundary)
 }
 
-/// Buckets a metre. The last one is cut short, and [`bucket`] starts within the first: an irrational grid.
-fn bucket_scale(extent: f32) -> f32 {
-    (BUCKETS as f32 - 0.618) / extent
+/// A number of each light, by which a set of them may be cut.
+#[derive(Clone, Copy)]
+struct Axis {
+    of: Of,
+    component: usize,
+    low: f32,
+    /// Buckets a unit.
+    scale: f32,
+    /// What costs are multiplied with.
+    shape: f64,
 }
 
-fn bucket(item: &Item, axis: usize, low: Vec3A, scale: f32) -> usize {
-    (((item.centre()[axis] - low[axis]) * scale + 0.271) as usize).min(BUCKETS - 1)
+/// What an axis is one of.
+#[derive(Clone, Copy)]
+enum Of {
+    Place,
+    Way,
+}
+
+impl Of {
+    #[inline]
+    fn vector(self, item: &Item) -> Vec3A {
+        match self {
+            Self::Place => item.centre(),
+            Self::Way => item.axis,
+        }
+    }
+}
+
+/// The axes along which the items differ.
+fn axes(items: &[Item]) -> impl Iterator<Item = Axis> {
+    [Of::Place, Of::Way].into_iter().flat_map(|of| {
+        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        for vector in items.iter().map(|item| of.vector(item)) {
+            (low, high) = (low.min(vector), high.max(vector));
+        }
+        let extent = high - low;
+        let longest = extent.max_element();
+        let least = match of {
+            Of::Place => ROUNDING * low.abs().max(high.abs()).max_element(),
+            Of::Way => ONE_WAY,
+        };
+        // Thin slices of a long box are penalised, as in the source.
+        let axis = move |component: usize| Axis {
+            of,
+            component,
+            low: low[component],
+            // The last one is cut short, and `bucket` starts within the first: an irrational grid.
+            scale: (BUCKETS as f32 - 0.618) / extent[component],
+            shape: f64::from(longest / extent[component]),
+        };
+        let differ = move |&component: &usize| longest > least && extent[component] > 1e-3 * longest;
+        (0..3).filter(differ).map(axis)
+    })
+}
+
+impl Axis {
+    #[inline]
+    fn bucket(&self, item: &Item) -> usize {
+        let along = self.of.vector(item)[self.component] - self.low;
+        ((along * self.scale + 0.271) as usize).min(BUCKETS - 1)
+    }
 }
 
 /// The boundaries between buckets that have items on both sides, each with the cost of the two sides.

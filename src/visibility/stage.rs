@@ -10,6 +10,8 @@ use crate::scene::light::LightId;
 use crate::scene::light_sampling::LightSampling;
 use crate::scene::needs::Needs;
 use crate::scene::receiver::Receiver;
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -119,6 +121,20 @@ impl Stage {
             return Some(*centre);
         }
         visited(self.visits, &self.scene, &self.occluders, self.bounce_starts, centre.pixel, pass)
+    }
+
+    /// Where passes visit, at one point a pixel: the receivers themselves where they stay or keep to their pixels, or else
+    /// those of a pass that is never rendered. What is learned of these places says nothing of who arrives.
+    pub(crate) fn places(&self) -> Cow<'_, [Receiver]> {
+        match self.visits {
+            Receivers::Centre | Receivers::Spread => self.receivers().into(),
+            Receivers::Bounce => self
+                .receivers()
+                .par_iter()
+                .filter_map(|centre| self.visited(centre, u32::MAX))
+                .collect::<Vec<_>>()
+                .into(),
+        }
     }
 
     /// What the scene needs of a renderer.

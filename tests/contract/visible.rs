@@ -7,13 +7,14 @@ use citylights::base::draws::Points;
 use citylights::base::random::RunKey;
 use citylights::render::film::Film;
 use citylights::render::passes::Plan;
-use citylights::scene::Parts;
 use citylights::scene::light::Kind;
+use citylights::scene::{Parts, Scene};
 use citylights::shading::importance::importance;
-use citylights::strategy::{BuildContext, Frame, PickBuffer, Registry};
+use citylights::strategy::{AnySampler, BuildContext, Frame, PickBuffer, Registry};
 use citylights::verify::{Verifier, VerifyOptions};
 use citylights::visibility::offset::Offset;
 use citylights::visibility::stage::{LeaveOut, Stage};
+use citylights::visibility::visits::Receivers;
 use glam::Vec3;
 
 /// The tree that it falls back to where other receivers learn.
@@ -53,7 +54,13 @@ fn assert_kept(name: &str, stage: &Stage) {
 #[test]
 fn the_weights_of_each_light_sum_to_one() {
     let stage = stage(courtyard());
-    for name in ["visible:cell=4", "visible:cell=4,picks=3", "visible:cell=4,memory=0", "visible:cell=4,cut=1"] {
+    for name in [
+        "visible:cell=4",
+        "visible:cell=4,picks=1",
+        "visible:cell=4,picks=3",
+        "visible:cell=4,memory=0",
+        "visible:cell=4,cut=1",
+    ] {
         let sampler = sampler(name, &stage);
         let passes = 4096;
         let frame = Frame { points: Points::R2, ..Frame::new(stage.receivers(), RunKey { seed: 4, run: 0 }) };
@@ -85,21 +92,20 @@ fn lights_that_are_expected_get_whole_numbers_of_picks_in_every_pass() {
     let sampler = sampler("visible:picks=16", &stage);
     let begun = sampler.begin(Frame::new(stage.receivers(), RunKey { seed: 1, run: 0 }), 0..4);
     let (mut worker, mut buffer) = (begun.worker(false), PickBuffer::default());
-    let (mut lamps, mut triangles) = (0, 0);
+    let (mut lamps, mut triangles, mut moons) = (0, 0, 0);
     for at in stage.receivers() {
         let mut counts = vec![0.0; stage.scene().lights().len()];
         assert!(sampler.expected_counts(at, &mut counts));
         let picks: f32 = counts.iter().sum();
         assert!(picks < 16.0 * 4.0 / 3.0 + 1.0, "{picks} picks");
         worker.fill(std::slice::from_ref(at), 0..4, true, &mut buffer);
-        // By chance none is expected a whole number of times, but for what is left alone.
+        // By chance none is expected a whole number of times.
         for (light, &count) in (0..).zip(&counts).filter(|(_, count)| **count >= 1.0 && count.fract() == 0.0) {
-            let kind = stage.scene().lights()[light as usize].kind();
-            if kind == Kind::Directional {
-                continue;
-            }
-            let extended = kind == Kind::Triangle;
-            *(if extended { &mut triangles } else { &mut lamps }) += 1;
+            *(match stage.scene().lights()[light as usize].kind() {
+                Kind::Triangle => &mut triangles,
+                Kind::Directional => &mut moons,
+                Kind::Point | Kind::Spot => &mut lamps,
+            }) += 1;
             for call in buffer.calls() {
                 let picks: Vec<_> = call.iter().filter(|pick| pick.light == light).collect();
                 assert_eq!(picks.len(), count as usize, "light {light}");
@@ -107,8 +113,33 @@ fn lights_that_are_expected_get_whole_numbers_of_picks_in_every_pass() {
             }
         }
     }
-    assert!(lamps > 100 && triangles > 10, "{lamps} lamps and {triangles} triangles");
+    assert!(lamps > 100 && triangles > 10 && moons > 10, "{lamps} lamps, {triangles} triangles, {moons} moons");
     assert_kept("visible:picks=16", &stage);
+}
+
+#[test]
+fn it_draws_more_where_each_receiver_is_visited_once() {
+    for (receivers, picks) in [(Receivers::Centre, 16), (Receivers::Spread, 64), (Receivers::Bounce, 64)] {
+        let scene = Scene::new(courtyard()).expect("a scene");
+        let stage = Stage::visiting(scene, LeaveOut::No, Offset::SCALED, receivers);
+        assert_eq!(expected("visible", &stage), expected(&format!("visible:picks={picks}"), &stage), "{receivers:?}");
+    }
+}
+
+#[test]
+fn tables_are_learned_where_bounces_end_not_where_the_camera_looks() {
+    let [centre, bounce] = [Receivers::Centre, Receivers::Bounce].map(|receivers| {
+        Stage::visiting(Scene::new(courtyard()).expect("a scene"), LeaveOut::No, Offset::SCALED, receivers)
+    });
+    let [by_camera, by_bounces] = [&centre, &bounce].map(|stage| sampler("visible:picks=1", stage));
+    let places = bounce.places();
+    let counts = |sampler: &dyn AnySampler, at| {
+        let mut counts = vec![0.0; bounce.scene().lights().len()];
+        assert!(sampler.expected_counts(at, &mut counts));
+        counts
+    };
+    let differ = places.iter().filter(|at| counts(&*by_camera, at) != counts(&*by_bounces, at)).count();
+    assert!(places.len() > 20 && 10 * differ > 8 * places.len(), "{differ} of {}", places.len());
 }
 
 #[test]
@@ -116,7 +147,7 @@ fn a_light_that_no_probe_saw_is_within_reach() {
     let mut parts = courtyard();
     let hidden = 26..34;
     let stage = stage_with(parts.clone(), LeaveOut::No, Offset::SCALED);
-    for (counts, at) in expected("visible:cell=4", &stage).iter().zip(stage.receivers().iter().step_by(29)) {
+    for (counts, at) in expected("visible:cell=4,picks=1", &stage).iter().zip(stage.receivers().iter().step_by(29)) {
         for light in hidden.clone() {
             let above = importance(&stage.scene().lights()[light], at) > 0.0;
             assert_eq!(counts[light] > 0.0, above, "light {light} at {}: {}", at.position, counts[light]);
@@ -138,7 +169,7 @@ fn lights_that_nobody_sees_get_the_floor_and_what_is_left_of_a_prior() {
     let stage = stage_with(courtyard(), LeaveOut::No, Offset::SCALED);
     let by_weight = hidden_picks(TREE, &stage);
     let found = [0.001, 0.25, 0.5, 1.0].map(|floor| {
-        let found = hidden_picks(&format!("visible:cell=3,floor={floor},probes=256"), &stage) / by_weight;
+        let found = hidden_picks(&format!("visible:cell=3,floor={floor},probes=256,picks=1"), &stage) / by_weight;
         println!("floor {floor}: {found} of the picks that weights alone give them");
         assert!(found > 0.8 * floor, "{found} of {floor}");
         found
@@ -151,7 +182,7 @@ fn receivers_too_few_for_a_cell_share_a_larger_one_or_take_the_tree() {
     let stage = stage(courtyard());
     let all = stage.receivers().len();
     assert_eq!(
-        bits(&image(&format!("visible:cell=1,least={}", all + 1), &stage, 2)),
+        bits(&image(&format!("visible:cell=1,least={},picks=1", all + 1), &stage, 2)),
         bits(&image(TREE, &stage, 2)),
         "no cell holds more receivers than there are"
     );
@@ -189,7 +220,7 @@ fn a_cluster_of_near_and_far_lights_is_no_trap() {
     parts.lights.push(point(Vec3::new(3e12, 0.0, 1e12), 1e27));
     parts.lights.push(point(Vec3::new(-2e10, 1e10, 1e9), 1e22));
     let stage = stage_with(parts, LeaveOut::No, Offset::SCALED);
-    for name in ["visible:cell=4,least=1,cut=1", "visible:cell=4,least=8,cut=24,probes=16"] {
+    for name in ["visible:cell=4,least=1,cut=1,picks=1", "visible:cell=4,least=8,cut=24,probes=16,picks=1"] {
         for (counts, at) in expected(name, &stage).iter().zip(stage.receivers().iter().step_by(29)) {
             let sum: f64 = counts.iter().map(|&count| f64::from(count)).sum();
             assert!((sum - 1.0).abs() < 1e-4, "{name}: {sum} picks at {}", at.position);
@@ -201,7 +232,7 @@ fn a_cluster_of_near_and_far_lights_is_no_trap() {
 #[test]
 fn what_is_learned_lowers_the_error() {
     let stage = stage(courtyard());
-    let [tree, learned] = [TREE, "visible:cell=3"].map(|name| Runs::new(name, &stage, 8, 4).mse());
+    let [tree, learned] = [TREE, "visible:cell=3,picks=1"].map(|name| Runs::new(name, &stage, 8, 4).mse());
     println!("MSE {tree:.3e} by the tree, {learned:.3e} by what is seen");
     assert!(learned < 0.5 * tree, "{learned} and {tree}");
 }
@@ -242,7 +273,8 @@ fn tables_are_the_same_whoever_makes_them() {
 fn a_receiver_that_nobody_knew_of_is_served() {
     let stage = stage(courtyard());
     let at = receiver(Vec3::new(500.0, 3.0, 7.0), Vec3::X);
-    for (name, at) in [("visible:cell=2", at), ("visible:cell=2", receiver(Vec3::new(1.0, 5.0, 0.0), Vec3::NEG_Y))] {
+    let name = "visible:cell=2,picks=1";
+    for at in [at, receiver(Vec3::new(1.0, 5.0, 0.0), Vec3::NEG_Y)] {
         let mut counts = vec![0.0; stage.scene().lights().len()];
         let mut by_tree = counts.clone();
         assert!(sampler(name, &stage).expected_counts(&at, &mut counts));
@@ -260,10 +292,10 @@ fn without_memory_or_need_it_is_the_tree() {
     };
     let open = || ground(12.0, (0..9).map(|i| point(Vec3::new(i as f32 - 4.0, 0.0, 4.0), 100.0)).collect());
     for (what, name, tree, parts) in [
-        ("no memory", "visible:memory=0", TREE, courtyard()),
-        ("one light", "visible", "light-tree", one()),
-        ("nothing in between", "visible", "light-tree", open()),
-        ("no light", "visible", "light-tree", ground(12.0, Vec::new())),
+        ("no memory", "visible:memory=0,picks=1", TREE, courtyard()),
+        ("one light", "visible:picks=1", "light-tree", one()),
+        ("nothing in between", "visible:picks=1", "light-tree", open()),
+        ("no light", "visible:picks=1", "light-tree", ground(12.0, Vec::new())),
     ] {
         let stage = stage(parts);
         assert_eq!(bits(&image(name, &stage, 3)), bits(&image(tree, &stage, 3)), "{what}");
@@ -312,7 +344,7 @@ fn impossible_parameters_are_refused_with_what_is_allowed() {
         ("visible:probes=0", "1 to 256"),
         ("visible:floor=0", "0.001 to 1"),
         ("visible:floor=1.5", "0.001 to 1"),
-        ("visible:picks=0", "1 to 1024"),
+        ("visible:picks=1025", "0 to 1024"),
         ("visible:memory=-1", "0 to 65536"),
     ] {
         assert!(message(text).contains(allowed), "{text}: {}", message(text));

@@ -17,15 +17,16 @@
 //! | what is seen of each cluster there? | `table` |
 //! | which cluster is chosen at this receiver? | `weighed` |
 //!
-//! A table depends on the scene, the seed and the receivers of its cell, all known when the sampler is built, and on
-//! nothing that is sampled. It is made when a receiver of its cell is first arrived at, on that receiver's thread; a second
-//! thread that comes meanwhile waits for it. So it does not matter who makes it, and its cost falls into the first pass.
+//! A table depends on the scene, the seed and places of its cell, all known when the sampler is built, and on nothing that is
+//! sampled nor on who arrives. Where receivers move, its places are what a pass visits that no run makes: bounces meet
+//! surfaces that the camera does not see. It is made when a receiver of its cell is first arrived at, on that receiver's thread;
+//! a second thread that comes meanwhile waits for it. So it does not matter who makes it, and its cost falls into the first
+//! pass.
 //!
-//! Where fewer than `least` receivers are in a cell, its probes would cost more than what they save: on `stadium`, with cells of
-//! 8 m and a table however few they are, the first pass takes three times as long. So the cells of such receivers are doubled,
-//! up to three times, until there are enough. Receivers that even then share no table choose by `light-tree:facing=rms`, the same
-//! tree, and so do those of cells beyond the bound on memory. Where nothing can stand in between or there is no choice, all choose
-//! by `light-tree` as it comes.
+//! Where fewer than `least` receivers are in a cell, its probes would cost more than what they save. So the cells of such
+//! receivers are doubled, up to three times, until there are enough. Receivers that even then share no table choose by
+//! `light-tree:facing=rms`, the same tree, and so do those of cells beyond the bound on memory. Where nothing can stand in between
+//! or there is no choice, all choose by `light-tree` as it comes.
 //!
 //! Source: this project; clusters of a light tree with learned weights as in Wang et al., ACM TOG 40(6), 2021.
 
@@ -46,6 +47,11 @@ use cells::Cells;
 use learned::{Lesson, School, Table, WIDTH};
 use weighed::Weighed;
 
+/// Picks a pass where receivers stay: coming to one, which weighs the clusters of a table, takes about as long.
+const STAYING: u32 = 16;
+/// Picks a pass where each receiver is visited once, so that every pass pays for coming to it.
+const MOVING: u32 = 64;
+
 /// About `picks` lights by tables of what each place sees.
 pub(crate) struct Visible {
     /// Side of a cell in metres.
@@ -53,6 +59,7 @@ pub(crate) struct Visible {
     /// Fewest receivers of a cell with a table.
     least: u32,
     lesson: Lesson,
+    /// 0 for what the condition asks for.
     picks: u32,
     /// Most bytes of all tables.
     memory: usize,
@@ -66,23 +73,23 @@ impl Strategy for Visible {
         claim: Claim::Unbiased,
     };
     type Sampler = Sampler;
-    const GRID: &'static str = "picks={1,4,16,64},cut={64,256}";
+    const GRID: &'static str = "picks={4,16,64},cut={256,1024}";
 
     fn configure(arguments: &mut Arguments<'_>) -> Result<Self> {
-        // Half or twice a default, of `least` a quarter or four times, costs a sixth of error x CPU s at most, in the mean of two
-        // scenes: see `study visible`.
+        // Each against its neighbours: results/README.md, what was tried for `visible`.
         let cell =
             "side in metres of the smallest cells whose receivers share a table, one for each way that they face";
-        let cell = arguments.real("cell", 8.0, 0.01..=100_000.0, cell)?;
+        let cell = arguments.real("cell", 128.0, 0.01..=100_000.0, cell)?;
         let least =
             "fewest receivers of a cell with a table: those of cells with fewer share one of twice the side, and so on";
-        let least = arguments.count("least", 32, 1..=65_536, least)?;
+        let least = arguments.count("least", 4, 1..=65_536, least)?;
         let cut = "most clusters of a table, or those of the tree's root if they are more";
-        let cut = arguments.count("cut", 256, 1..=4096, cut)?;
+        let cut = arguments.count("cut", 1024, 1..=4096, cut)?;
         let probes = arguments.count("probes", 4, 1..=256, "shadow rays that each cluster of a table is tried by")?;
         let floor = "about the share of picks by what clusters could add with nothing in between: each light stays within reach";
         let floor = arguments.real("floor", 0.25, 0.001..=1.0, floor)?;
-        let picks = arguments.count("picks", 1, 1..=1024, "lights drawn a pass")?;
+        let picks = "lights drawn a pass; 0 for 16 where receivers stay, and 64 where each is visited once";
+        let picks = arguments.count("picks", 0, 0..=1024, picks)?;
         let memory = "most MB of all tables; cells of few receivers have none where it does not suffice";
         let memory = arguments.count("memory", 16, 0..=65_536, memory)?;
         let lesson = Lesson { cut: cut as usize, probes, floor: floor.into() };
@@ -95,20 +102,24 @@ impl Strategy for Visible {
 
     fn build(&self, context: BuildContext<'_>) -> Result<Sampler> {
         let stage = context.stage;
+        let picks = match self.picks {
+            0 if stage.visits().moves() => MOVING,
+            0 => STAYING,
+            asked => asked,
+        };
         // With one light there is no choice, and with nothing in between nothing to learn.
         let learns = stage.needs().occlusion && stage.lights().len() > 1;
         let how = How { facing: if learns { Facing::Rms } else { Facing::Mean }, ..How::default() };
-        let walks = Walks { picks: self.picks, split: 0.0, cut: 0, open: OPEN };
+        let walks = Walks { picks, split: 0.0, cut: 0, open: OPEN };
         let tree = walks::Sampler::<WIDTH>::new(context, how, walks);
         let cells = if learns {
             let table = Table::<WIDTH>::bytes(tree.tree().most_divided(self.lesson.cut));
-            Cells::new(stage.receivers(), self.cell, self.least, self.memory, table)
+            Cells::new(&stage.places(), self.cell, self.least, self.memory, table)
         } else {
             Cells::default()
         };
         let seed = hash(&[context.seed, u64::from_le_bytes(*b"visible:")]);
-        let Self { lesson, picks, .. } = *self;
-        Ok(Sampler { tree, cells, target: TargetFunction::new(context), lesson, picks, seed })
+        Ok(Sampler { tree, cells, target: TargetFunction::new(context), lesson: self.lesson, picks, seed })
     }
 }
 

@@ -13,9 +13,6 @@ use crate::scene::receiver::Receiver;
 use crate::strategy::Tally;
 use crate::tree::{ALMOST_ONE, Divided, Element, LEAST_SHARE, Memory, Tree};
 
-/// Lights get picks of their own in so many rounds at the most: what one leaves may be enough for others.
-const ROUNDS: u32 = 3;
-
 /// The chances of all clusters at a receiver.
 #[derive(Default)]
 pub(super) struct Weighed<const N: usize> {
@@ -76,9 +73,9 @@ impl<const N: usize> Weighed<N> {
         }
     }
 
-    /// Takes the lights that are alone in their slots and expected once or more in so many picks from what is drawn: a light
-    /// without extent gets one pick, a triangle the nearest whole number. What they leave is for the others; about as many picks
-    /// are made in all, a third more at most.
+    /// Takes the lights that are alone in their elements and expected once or more in so many picks from what is drawn: a light
+    /// without extent gets one pick, a triangle the nearest whole number. What they leave is for the others, of which some may
+    /// be expected once or more then; about as many picks are made in all, a third more at most.
     ///
     /// Source: thresholds as in Fearnhead and Clifford, J. R. Stat. Soc. B 65(4), 2003; whole numbers of points: `allocate`.
     pub(super) fn settle<T: Tally>(
@@ -97,17 +94,15 @@ impl<const N: usize> Weighed<N> {
         // All at once, so that no later receiver needs more.
         certain.reserve(picks as usize);
         let mut total = ends.last().copied().unwrap_or(0.0);
-        for _ in 0..ROUNDS {
-            if *left == 0 || total <= 0.0 {
-                break;
-            }
+        // Each round takes a pick at least.
+        while *left > 0 && total > 0.0 {
             let limit = (total / f64::from(*left)) as f32;
             let before = certain.len();
-            for Shares { node, shares } in rows.iter_mut().filter(|row| row.node != DIRECTIONAL) {
+            for Shares { node, shares } in rows.iter_mut() {
                 for (slot, share) in
                     shares.iter_mut().enumerate().filter(|(_, share)| **share >= limit && **share > 0.0)
                 {
-                    let Some(light) = tree.light_alone(*node, slot) else { continue };
+                    let Some(light) = tree.light_alone(element::<N>(*node, slot)) else { continue };
                     let expected = (*share / limit).round() as u32;
                     let count = if is_extended(light) { expected.clamp(1, picks) } else { 1 };
                     certain.push((light, count));
