@@ -391,7 +391,7 @@ fn every_strategy_is_measured_elsewhere_at_its_best_and_at_its_defaults() {
     let few = StudyOptions {
         overrides: Overrides { resolution: Some((16, 9)), ..Overrides::default() },
         pixels: Some(4),
-        seconds: 0.05,
+        seconds: 0.15,
         repeats: 4,
         ..options(folder.path(), "power:picks={1,4},light-tree:picks={1,2},visible:picks={1,2}")
     };
