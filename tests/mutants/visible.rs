@@ -193,12 +193,12 @@ fn a_table_changed_under_a_running_sequence_is_biased_and_drawn_anew_it_is_not()
 #[test]
 fn the_real_one_passes_inside_the_same_shell() {
     // It allocates in a pass, as no strategy may: `allocation` is not asked here.
-    assert!(failed("right:cell=3,least=8,cut=16,picks=1", yard()).is_empty());
+    assert!(failed("right:cell=3,least=8,cut=16", yard()).is_empty());
 }
 
 #[test]
 fn weights_by_another_table_than_the_picks_are_found() {
-    let failed = failed("stale:cell=3,least=8,cut=16,picks=1", yard());
+    let failed = failed("stale:cell=3,least=8,cut=16", yard());
     assert!(failed.contains(&"weights") && failed.contains(&"estimate"), "{failed:?}");
 }
 

@@ -14,7 +14,7 @@
 //! | question | where |
 //! |---|---|
 //! | which receivers share a table? | `cells` |
-//! | what is seen of each cluster there? | `table` |
+//! | what is seen of each cluster there? | `learned` |
 //! | which cluster is chosen at this receiver? | `weighed` |
 //!
 //! A table depends on the scene, the seed and places of its cell, all known when the sampler is built, and on nothing that is
