@@ -249,23 +249,6 @@ fn a_row_of_lamps_is_split_along_it() {
 }
 
 #[test]
-fn headlights_that_shine_along_a_street_either_way_are_told_apart() {
-    // In pairs at one place: no cut between places tells them apart.
-    let heads = (0..400).map(|i| Shape::Spot {
-        position: Vec3::new((i / 2) as f32 * 5.0 - 500.0, 0.0, 0.6),
-        axis: if i % 2 == 0 { Vec3::X } else { Vec3::NEG_X },
-        intensity: Vec3::splat(10_000.0),
-        cos_inner: 0.98,
-        cos_outer: 0.94,
-    });
-    let stage = everything(heads.collect());
-    let at = receiver(Vec3::new(2.0, 1.0, 0.5), Vec3::NEG_X);
-    let counts = expected("light-tree:open=0", &stage, &at);
-    let seen: f32 = (0..400).filter(|&light| adds(stage.scene(), light, &at)).map(|light| counts[light as usize]).sum();
-    assert!(seen > 0.9, "those that shine here get {seen} of the picks");
-}
-
-#[test]
 fn one_thread_and_two_build_the_same_tree() {
     let stage = everything(many(20_000, 9));
     let build = |threads: usize| {
